@@ -21,6 +21,7 @@ done
   # shellcheck disable=SC1091
   . "$here/../build/.ws/devel/setup.bash"
   QT_QPA_PLATFORM=xcb python3 "$here/../test/support/guide_pictures.py" "$here/images"
+  python3 "$here/../test/support/web_pictures.py" "$here/images"
 )
 if command -v convert > /dev/null; then
   find "$here/images" -name '*.png' -newer "$folder/began" | while read -r picture; do

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The panel in a window of its own, for machines without rqt."""
+"""The panel in a separate window, for computers without rqt."""
 import os
 import signal
 import socket
@@ -12,12 +12,13 @@ import rospy
 
 from mhri.base.gui import theme
 from mhri.base.gui.geometry import fitting, geometry_of, restore_geometry
-from mhri.screen.presenters.screen_host import ScreenHost
+from mhri.screen.presenters.fresh_start import FreshStart
+from mhri.screen.presenters.screen_presenter import ScreenPresenter
 from mhri.screen.presenters.settings_file import SettingsError, SettingsFile
 from mhri.screen.ros.backend import ScreenBackend
-from mhri.screen.saved_state import read_geometry
+from mhri.screen.saved_state import numbers_of, read_geometry, without_robots
 
-# How soon the number of a new robot is saved: it must survive even a killed program.
+# Delay before the number of a new robot is saved: it must survive even a killed program.
 KEEP_NUMBERS_MS = 1000
 
 
@@ -26,25 +27,25 @@ class MainWindow(QMainWindow):
 
     closing = Signal()
 
-    def __init__(self, host):
+    def __init__(self, presenter):
         super().__init__()
-        self._host = host
+        self._presenter = presenter
         self._sure = False
-        host.screen.leave_bar.close_requested.connect(self.close_now)
+        presenter.screen.leave_bar.close_requested.connect(self.close_now)
         self.setWindowTitle('mhri')
-        self.setCentralWidget(host.screen)
+        self.setCentralWidget(presenter.screen)
         self.resize(fitting(QSize(1280, 720)))
 
     def close_now(self):
-        """Close, whatever drives or records."""
+        """Close without a question, even while driving or recording."""
         self._sure = True
         self.close()
 
     def closeEvent(self, event):  # noqa: N802
-        """Stop the robots before the window goes; ask first while anything drives or records."""
-        question = '' if self._sure else self._host.asks_before_closing()
+        """Stop the robots before the window closes; ask first while driving or recording."""
+        question = '' if self._sure else self._presenter.asks_before_closing()
         if question:
-            self._host.screen.leave_bar.ask(question)
+            self._presenter.screen.leave_bar.ask(question)
             event.ignore()
             return
         self.closing.emit()
@@ -52,7 +53,7 @@ class MainWindow(QMainWindow):
 
 
 class SignalBell:
-    """Wakes Qt's event loop for SIGINT, SIGTERM and SIGHUP, which Python alone would not see."""
+    """Wakes Qt's event loop for SIGINT, SIGTERM and SIGHUP, which Python would not handle."""
 
     def __init__(self, on_signal):
         self._reading, self._writing = socket.socketpair()
@@ -69,47 +70,49 @@ class Standalone:
 
     :param argv: the node's command line
     :param settings_path: a JSON file, None for the user's own
-    :param remember: False leaves the settings alone, whatever happens
-    :param host: the :class:`ScreenHost` to show, None for one that drives
+    :param remember: False never saves the settings
+    :param presenter: the :class:`ScreenPresenter` to show, None for one that drives
+    :param simulated: the robots are simulated: keep nothing about them, and nothing of this run
+        for others
     """
 
-    def __init__(self, argv, settings_path=None, remember=True, host=None):
+    def __init__(self, argv, settings_path=None, remember=True, presenter=None, simulated=False):
         self._remember = remember
-        self._settings = SettingsFile(settings_path)
-        self.host = host or ScreenHost(ScreenBackend(argv))
-        self.window = MainWindow(self.host)
+        self._simulated = simulated
+        self._settings = SettingsFile(settings_path, simulated)
+        self.presenter = presenter or ScreenPresenter(ScreenBackend(argv))
+        self.window = MainWindow(self.presenter)
         self.window.closing.connect(self.close)
-        # The whole program is ours: its tool tips and questions look the same.
-        looks = self.host.screen.arrangement
+        # The whole program is ours: apply the look to tool tips and dialogs, too.
+        looks = self.presenter.screen.arrangement
         looks.theme_chosen.connect(lambda name: theme.apply(QApplication.instance(), name))
         theme.apply(QApplication.instance(), looks.theme)
-        # Whoever sends a signal cannot be asked.
+        # A signal ends the program without a question.
         self._bell = SignalBell(self.window.close_now)
-        self._robots_at_first = None
+        self._fresh = None
         self._closed = False
         self._saved = {}
         self._numbers = {}
         self._writing = threading.Lock()
-        self._numbers_timer = QTimer()
-        self._numbers_timer.setInterval(KEEP_NUMBERS_MS)
-        self._numbers_timer.timeout.connect(self._keep_numbers)
-        if remember:
+        self._numbers_timer = QTimer(interval=KEEP_NUMBERS_MS, timeout=self._keep_numbers)
+        if remember and not simulated:
             self._numbers_timer.start()
 
     def restore(self, afresh=False):
-        """Take over the settings of the last run, as far as they are usable.
+        """Restore the settings of the last run, as far as they are usable.
 
-        :param afresh: only the numbers of the robots, which are theirs for good
+        :param afresh: whether to restore only the numbers of the robots, which are permanent
         """
         problems, saved, placed = [], {}, False
         try:
             saved = self._settings.read()
             self._saved, state = saved, saved.get('state', {})
             if afresh:
-                numbers = state.get('numbers', {}) if isinstance(state, dict) else {}
-                saved, state = {}, {'numbers': numbers}
-            problems += self.host.restore_state(state)
-            self._numbers = self.host.operator.selection.numbers.kept()
+                saved, state = {}, numbers_of(state)
+            if self._simulated:
+                state = without_robots(state)
+            problems += self.presenter.restore_state(state)
+            self._numbers = self.presenter.operator.selection.numbers.kept()
             if 'geometry' in saved:
                 placed = restore_geometry(self.window, read_geometry(saved['geometry']))
         except (SettingsError, ValueError) as error:
@@ -117,6 +120,7 @@ class Standalone:
         if problems:
             rospy.logwarn('left out of the saved settings: %s (the file is kept as %s)',
                           '; '.join(problems)[:500], self._settings.keep_aside())
+        self.presenter.screen.arrangement.begin_text_size()
         if not placed:
             self.window.showMaximized()
 
@@ -125,26 +129,16 @@ class Standalone:
 
         Call it when the robots of the command line are in the list.
         """
-        self._remember = False
-        self._robots_at_first = self.host.operator.selection.robots
-        # The mux publishes a mode by itself, so its value does not tell who chose it.
-        self.host.screen.mode_requested.connect(self._on_change)
-
-    def _on_change(self, *_):
-        self._remember = True
-
-    def _has_changed_robots(self):
-        """Tell whether robots came or went in a run that began afresh."""
-        return self._robots_at_first not in (None, self.host.operator.selection.robots)
+        self._fresh = FreshStart(self.presenter)
 
     def _keep_numbers(self):
-        """Add the numbers of new robots to the settings as they were read (off the GUI thread)."""
-        numbers = self.host.operator.selection.numbers.kept()
+        """Save the loaded settings with the numbers of new robots (off the GUI thread)."""
+        numbers = self.presenter.operator.selection.numbers.kept()
         if numbers != self._numbers:
             self._numbers = numbers
             state = self._saved.get('state')
             state = {**(state if isinstance(state, dict) else {}), 'numbers': numbers}
-            self.host.operator.do(self._write_unless_closed, {**self._saved, 'state': state})
+            self.presenter.operator.do(self._write_unless_closed, {**self._saved, 'state': state})
 
     def _write_unless_closed(self, settings):
         with self._writing:
@@ -158,27 +152,29 @@ class Standalone:
             rospy.logwarn('the settings are not saved: %s', error)
 
     def run(self, app):
-        """Work until the window is closed; nothing of it may be used after that."""
+        """Run until the window is closed; the object must not be used after that."""
         app.exec_()
         self.delete_window()
 
     def delete_window(self):
-        """Delete every widget, before the application: Python would in any order, and may crash."""
+        """Delete every widget before the application: Python's own order may crash."""
         self.window.deleteLater()
         QApplication.sendPostedEvents(None, QEvent.DeferredDelete)
 
     def close(self):
-        """Stop the robots, save the settings, end."""
+        """Stop the robots, save the settings, and end."""
         if self._closed:
             return
         self._numbers_timer.stop()
         with self._writing:
             self._closed = True
-        # Their zero leaves first: on a busy computer the rest takes a while.
-        self.host.operator.select(())
-        kept = {'state': self.host.save_state(), 'geometry': geometry_of(self.window)}
-        remember = self._remember or self._has_changed_robots()
-        self.host.close()
+        # Send their zeros first: on a busy computer the rest takes a while.
+        self.presenter.operator.select(())
+        state = self.presenter.save_state()
+        kept = {'state': without_robots(state) if self._simulated else state,
+                'geometry': geometry_of(self.window)}
+        remember = self._remember and (self._fresh is None or self._fresh.is_changed)
+        self.presenter.close()
         if remember:
             self._write(kept)
         rospy.signal_shutdown('the panel was closed')
@@ -186,16 +182,16 @@ class Standalone:
 
 
 def make_replay(argv, path):
-    """Return the program that shows the replay of a session (blocking: it reads its events).
+    """Create the program that shows the replay of a session (blocking: reads the events).
 
-    :raises NotASession: its events cannot be read
+    :raises NotASession: the events cannot be read
     """
-    # Whoever shows no replay need not load it.
-    from mhri.replay.presenters.replay_host import make_host
-    host = make_host(argv, path)
-    program = Standalone(argv, remember=False, host=host)
+    # Loaded only for a replay.
+    from mhri.replay.presenters.replay_presenter import make_presenter
+    presenter = make_presenter(argv, path)
+    program = Standalone(argv, remember=False, presenter=presenter)
     program.window.takeCentralWidget()
-    program.window.setCentralWidget(host.widget())
+    program.window.setCentralWidget(presenter.widget())
     program.window.setWindowTitle('mhri: replay of {}'.format(
         os.path.basename(os.path.normpath(path))))
     return program

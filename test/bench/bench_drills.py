@@ -20,7 +20,7 @@ from support.drills import drill, NAMES  # noqa: E402
 
 DELAYS_S = (0.0, 0.2, 0.4)
 AGAIN = 3
-PATIENCE_S = 400.0
+TIMEOUT_S = 400.0
 # Runs that are the same but for chance differ by less.
 REPEATS_WITHIN = 0.05
 
@@ -51,7 +51,7 @@ def live(name, delay_s):
             'mhri.launch', 'gui:=none', 'inputs:=none', 'sim:={}'.format(len(scenario.types)),
             'sim_types:=' + ' '.join(scenario.types), 'sim_plan:={}'.format(plan),
             'drill:=' + name, 'drill_args:=--scripted --delay {}'.format(delay_s))
-        wait_for(lambda: launched.poll() is not None, PATIENCE_S, 'the drill', poll_s=0.5)
+        wait_for(lambda: launched.poll() is not None, TIMEOUT_S, 'the drill', poll_s=0.5)
         folder, = (Path(system.home) / 'mhri' / 'drills').iterdir()
         return result_in(str(folder))
 

@@ -120,8 +120,8 @@ class Ear:
         """Return the words of an accepted command in a list, [] without one."""
         found = event.hypothesis
         command = self.grammar.parse(found.text) if found else None
-        heard = rules.hear(found.text if found else '', command,
-                           found.confidence if found else 0.0, began, self.now)
+        heard = rules.judge(found.text if found else '', command,
+                            found.confidence if found else 0.0, began, self.now)
         if not heard.accepted:
             return []
         return [STOP] if heard.command == STOP else [command.words]
@@ -184,37 +184,37 @@ def share(good, things):
 
 
 def is_right(result):
-    """Tell whether exactly what was said was accepted."""
+    """Return whether exactly what was said was accepted."""
     return result.heard.accepted == [result.utterance.expected]
 
 
 def is_command(result):
-    """Tell whether a command was said that is no stop."""
+    """Return whether a command was said that is no stop."""
     return result.utterance.expected not in ('', STOP)
 
 
 def is_stop(result):
-    """Tell whether a stop was said."""
+    """Return whether a stop was said."""
     return result.utterance.expected == STOP
 
 
 def is_talk(result):
-    """Tell whether what was said is no command."""
+    """Return whether what was said is no command."""
     return not result.utterance.expected
 
 
 def hears_stop(result):
-    """Tell whether a stop was heard."""
+    """Return whether a stop was heard."""
     return result.heard.stop_at_s is not None
 
 
 def is_moved(result):
-    """Tell whether something moved."""
+    """Return whether something moved."""
     return result.heard.moved
 
 
 def has_stop(result):
-    """Tell whether a sentence has "stop" in one of its words."""
+    """Return whether a sentence has "stop" in one of its words."""
     return 'stop' in result.utterance.text
 
 
@@ -346,8 +346,8 @@ def main():
     language()
     voices, rooms = chosen(options)
     if options.short:
-        # To load a recogniser takes longer than a sentence; each voice has its own.
-        voices = voices[:2]
+        # To load a recogniser takes longer than a sentence; each voice in each room has its own.
+        voices, rooms = voices[:1], rooms[-1:]
     for voice in voices:
         if speech.can_say('stop', voice):
             speech.speak('stop', voice)
@@ -356,7 +356,7 @@ def main():
                   for number, voice in enumerate(voices) if options.taught}
         pool.map(teach, taught.items(), 1)
         jobs = plan('tune' if options.tune else 'test', voices, rooms, options.each,
-                    61 if options.short else options.step, tuning, taught)
+                    121 if options.short else options.step, tuning, taught)
         found = [listen(job) for job in jobs] if options.short else pool.map(listen, jobs, 1)
     results = list(itertools.chain.from_iterable(found))
     print_table('room', results, lambda result: result.room, rooms)

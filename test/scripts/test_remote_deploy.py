@@ -7,8 +7,10 @@ Over a real ssh: test_remote_network.py.
 import os
 import subprocess
 
-from conftest import REPO
+from support.checkout import REPO
 import pytest
+
+pytestmark = pytest.mark.modest
 
 SCRIPT = REPO / 'utils' / 'host' / 'turtlebot_deploy.sh'
 REMOTE = REPO / 'utils' / 'remote'
@@ -52,6 +54,11 @@ def robot(tmp_path):
     return Robot(tmp_path)
 
 
+def inodes(robot):
+    """Return those of the robot's files: a file that is sent again has another one."""
+    return {name: (robot.there / name).stat().st_ino for name in FILES}
+
+
 def is_complete(robot):
     assert sorted(path.name for path in robot.there.iterdir()) == sorted(FILES + [LINK])
     for name in FILES:
@@ -62,10 +69,10 @@ def is_complete(robot):
 def test_everything_is_sent_once(robot):
     status, output = robot.deploy()
     assert status == 0, output
-    assert 'checked: 192.0.2.7 has all {} files'.format(len(FILES)) in output
     is_complete(robot)
+    before = inodes(robot)
     status, output = robot.deploy()
-    assert status == 0 and 'nothing to send' in output
+    assert status == 0 and inodes(robot) == before
     is_complete(robot)
 
 
@@ -78,12 +85,11 @@ def test_link_alone_is_mended(robot, other):
         link.write_bytes((REMOTE / 'mhri_turtlebot2.launch').read_bytes())
     elif other:
         link.symlink_to(other)
-    before = {name: (robot.there / name).stat().st_ino for name in FILES}
+    before = inodes(robot)
     status, output = robot.deploy()
     assert status == 0, output
-    assert 'sending to 192.0.2.7:mhri: {}\n'.format(LINK) in output and 'checked: ' in output
     is_complete(robot)
-    assert {name: (robot.there / name).stat().st_ino for name in FILES} == before
+    assert inodes(robot) == before
 
 
 @pytest.mark.parametrize('damage, names', [
@@ -97,15 +103,14 @@ def test_what_is_not_as_it_was_sent_is_said(robot, damage, names):
     robot.program(robot.tools / 'ln', '#!/bin/sh\n/usr/bin/ln "$@" && {}\n'.format(damage))
     status, output = robot.deploy()
     assert status == 1
-    assert 'the files on 192.0.2.7 differ from those sent ({})'.format(names) in output
-    assert 'check its disk' in output and 'checked: ' not in output
+    assert '({})'.format(names) in output
     (robot.tools / 'ln').unlink()
     status, output = robot.deploy()
-    assert status == 0 and 'sending to 192.0.2.7:mhri: {}\n'.format(names) in output
+    assert status == 0 and ': {}\n'.format(names) in output
     is_complete(robot)
 
 
 def test_link_that_was_not_made_is_said(robot):
     robot.program(robot.tools / 'ln', '#!/bin/sh\nexit 0\n')
     status, output = robot.deploy()
-    assert status == 1 and 'differ from those sent ({})'.format(LINK) in output
+    assert status == 1 and '({})'.format(LINK) in output

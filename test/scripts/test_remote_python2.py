@@ -6,7 +6,7 @@ import os
 import shutil
 import subprocess
 
-from conftest import REPO
+from support.checkout import REPO
 import pytest
 from test_remote_check import FakeMaster, HOST
 

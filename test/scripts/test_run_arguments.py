@@ -5,122 +5,80 @@ import re
 
 import pytest
 
+pytestmark = pytest.mark.modest
 
-@pytest.mark.parametrize('arguments, said', [
+
+@pytest.mark.parametrize('arguments, named', [
     (['--frobnicate'], '--frobnicate'),
-    (['-x'], '-x'),
-    (['--sim'], '--sim needs a value'),
-    (['--sim', ''], '--sim needs a value'),
-    (['--sim', '--demo'], '--sim needs a value'),
-    (['--sim', '0'], "'0' is not a number of robots from 1 to 12"),
-    (['--sim', '13'], "'13'"),
-    (['--sim', '-1'], '--sim needs a value'),
-    (['--sim', '3.5'], "'3.5'"),
-    (['--sim', '99999999999999999999'], "'99999999999999999999'"),
-    (['--sim', '3; touch hacked'], "'3; touch hacked'"),
+    (['--sim'], '--sim'),
+    (['--sim', '0'], "'0'"),
     (['--sim', '$(touch hacked)'], "'$(touch hacked)'"),
-    (['--sim', '3', 'turtlebot2;touch hacked'], 'is not a list of robot types'),
-    (['--sim', '3', '--sim-types', '$(touch hacked)'], 'is not a list of robot types'),
-    (['--sim-types', 'turtlebot2'], 'give --sim as well'),
-    (['--link'], '--link needs a value'),
-    (['--link', 'bot1'], "'bot1' is not NAME=ADDRESS"),
-    (['--link', 'bot1=192.168.0.7 bot2'], "'bot2' is not NAME=ADDRESS"),
-    (['--link', '1bot=192.168.0.7'], "'1bot=192.168.0.7'"),
-    (['--link', "bot1=tcp/x';touch hacked:1"], 'is not NAME=ADDRESS'),
-    (['--link', 'bot1=http/192.168.0.7:80'], 'is not NAME=ADDRESS'),
-    (['--link', 'bot1', '--router', 'somewhere'], "--router: 'somewhere' is not an endpoint"),
-    (['--router', '192.0.2.1:7447'], '--router: name the robots behind it'),
-    (['--keep', 'states'], '--keep goes with --link'),
-    (['--link', 'bot1=192.168.0.7', '--keep', 'all'], "--keep: 'all' is none of session, states"),
-    (['--ip'], '--ip needs a value'),
-    (['--ip', '300.1.1.1'], "'300.1.1.1' is not an IPv4 address"),
-    (['--ip', '1.2.3'], "'1.2.3'"),
-    (['--ip', '1.2.3.4.5'], "'1.2.3.4.5'"),
-    (['--ip', '010.1.1.1'], 'has leading zeros, which programs read differently: write 10.1'),
-    (['--ip', 'fe80::1'], "'fe80::1'"),
+    (['--sim', '3', 'turtlebot2;touch hacked'], '--sim'),
+    (['--sim', '3', '--sim-types', '$(touch hacked)'], '$(touch hacked)'),
+    (['--sim-types', 'turtlebot2'], '--sim'),
+    (['--link', 'bot1=192.168.0.7 bot2'], "'bot2'"),
+    (['--link', "bot1=tcp/x';touch hacked:1"], '--link'),
+    (['--link', 'bot1=udp/192.168.0.7:7447'], "'udp/192.168.0.7:7447'"),
+    (['--link', 'bot1', '--router', 'somewhere'], "--router: 'somewhere'"),
+    (['--router', '192.0.2.1:7447'], '--router'),
+    (['--keep', 'states'], '--link'),
+    (['--link', 'bot1=192.168.0.7', '--keep', 'all'], "'all'"),
+    (['--ip', '300.1.1.1'], "'300.1.1.1'"),
+    (['--ip', '010.1.1.1'], '10.1.1.1'),
     (['--ip', '`touch hacked`'], "'`touch hacked`'"),
-    (['--ip', '127.0.0.1\n'], '--ip: a control character'),
-    (['--ip', '1.2.3.4\x1b[2J'], '--ip: a control character'),
-    (['--ip', '1.' * 50000], 'is too long: at most 512'),
-    (['--ip', '1.' * 200], 'is not an IPv4 address'),
-    (['--master', 'http://127.0.0.1:11311\n'], '--master: a control character'),
-    (['--sim', '3\n'], '--sim: a control character'),
-    (['--\x1b[2J'], 'there is no option --?[2J'),
-    (['--' + 'x' * 100000], 'there is no option --xxx'),
-    (['x' * 100000], 'is neither an option nor'),
-    (['gui:=\x1b[2J'], 'gui: a control character'),
-    (['robots:=bot1\nbot2'], 'robots: a control character'),
-    (["robots:=bot1' --fresh --select 'bot1"], "robots: 'bot1'' is not a robot's name"),
-    (['robots:=bot1 --select'], "robots: '--select' is not a robot's name"),
-    (["screenshot:=x' --fresh '"], 'screenshot: a quote'),
-    (["demo_result:=x' --fresh '"], 'demo_result: a quote'),
-    (['--demo', '--screenshot', "x' --fresh '.png"], '--screenshot: a quote'),
-    (['--master'], '--master needs a value'),
-    (['--master', 'localhost'], "'localhost' is not an address"),
-    (['--master', 'http://host'], "'http://host'"),
-    (['--master', 'http://host:99999'], 'there is no port 99999'),
-    (['--master', 'http://host:11311/$(touch hacked)'], 'is not an address'),
-    (['--master', 'https://host:11311'], "'https://host:11311'"),
-    (['--demo', '--ip', '127.0.0.1'], 'leave out --ip and --master'),
-    (['--demo', '--master', 'http://127.0.0.1:11311'], 'leave out --ip and --master'),
-    (['--demo', '--sim', '3'], '--demo plays with four robots'),
-    (['--replay'], '--replay needs a value'),
-    (['--replay', '/nowhere/at/all'], '--replay: there is no /nowhere/at/all'),
-    (['--replay', '/tmp', '--sim', '2'], 'leave out --ip, --master, --sim'),
-    (['--replay', '/tmp', '--demo'], 'leave out --ip, --master, --sim'),
-    (['--replay', '/tmp\n'], '--replay: a control character'),
-    (['--screenshot', 'x.png'], '--screenshot goes with --demo'),
-    (['--drill'], '--drill needs a value'),
-    (['--drill', 'mace'], "there is no drill 'mace'; there are figure_of_eight lost_link maze"),
-    (['--drill', '../drills/maze'], "there is no drill '../drills/maze'"),
-    (['--drill', 'nowhere.yaml'], 'there is no file nowhere.yaml'),
-    (['--drill', 'a b'], 'a space or quote'),
-    (['--drill', 'maze', '--sim', '3'], 'leave out --sim and --demo'),
-    (['--drill', 'maze', '--demo'], 'leave out --sim and --demo'),
-    (['--scripted'], '--scripted goes with --drill NAME'),
-    (['--demo', '--screenshot', '/nowhere/at/all.png'], 'there is no folder /nowhere/at'),
-    (['--demo', '--screenshot', '/tmp'], '/tmp is a folder'),
-    (['start'], "'start' is neither an option nor ARG:=VALUE"),
-    (['3'], "'3'"),
+    (['--ip', '127.0.0.1\n'], '--ip'),
+    (['--ip', '1.' * 50000], '512'),
+    (['--master', 'http://127.0.0.1:11311\n'], '--master'),
+    (['--\x1b[2J'], '--?[2J'),
+    (['x' * 100000], 'x'),
+    (['gui:=\x1b[2J'], 'gui'),
+    (['robots:=bot1\nbot2'], 'robots'),
+    (["robots:=bot1' --fresh --select 'bot1"], "'bot1''"),
+    (['robots:=bot1 --select'], "'--select'"),
+    (["screenshot:=x' --fresh '"], 'screenshot'),
+    (['--demo', '--screenshot', "x' --fresh '.png"], '--screenshot'),
+    (['--master', 'http://host:99999'], '99999'),
+    (['--master', 'http://host:11311/$(touch hacked)'], '--master'),
+    (['--demo', '--ip', '127.0.0.1'], '--ip'),
+    (['--demo', '--sim', '3'], '--sim'),
+    (['--replay', '/nowhere/at/all'], '/nowhere/at/all'),
+    (['--replay', '/tmp', '--sim', '2'], '--sim'),
+    (['--replay', '/tmp', '--fresh'], '--fresh'),
+    (['--screenshot', 'x.png'], '--demo'),
+    (['--drill', '../drills/maze'], "'../drills/maze'"),
+    (['--drill', 'nowhere.yaml'], 'nowhere.yaml'),
+    (['--drill', 'a b'], "'a b'"),
+    (['--drill', 'maze', '--sim', '3'], '--sim'),
+    (['--scripted'], '--drill'),
+    (['--demo', '--screenshot', '/nowhere/at/all.png'], '/nowhere/at'),
+    (['--demo', '--screenshot', '/tmp'], '/tmp'),
+    (['start'], "'start'"),
     ([''], "''"),
-    (['X Y:=3'], "'X Y:=3' is not ARG:=VALUE"),
-    ([':=3'], "':=3' is not ARG:=VALUE"),
-    (['nosucharg:=1'], "no argument 'nosucharg' in mhri.launch: it has gui, required, robots"),
-    (['enabeling:=pedal'], "no argument 'enabeling' in mhri.launch: did you mean enabling?"),
-    (['sim_type:=turtlebot2'], 'did you mean sim_types'),
-    (['restarter:=sh'], "no argument 'restarter'"),
-    (['gui:=foo'], "gui: 'foo' is not auto, rqt, standalone or none"),
-    (['gui:=none', 'gui:='], "gui: ''"),
-    (['enabling:=pedel'], "enabling: 'pedel' is not joy, ps3joy, pedal or voice"),
-    (['inputs:=joy,pedal'], "inputs: 'joy,pedal' is not joy, pedal, voice or none"),
-    (['required:=yes'], "required: 'yes' is not true or false"),
-    (['automatic_switching:=1'], "automatic_switching: '1' is not true or false"),
-    (['sim:=13'], "sim: '13' is not a number from 0 to 12"),
-    (['sim:=many'], "sim: 'many'"),
-    (['--sim', '3', 'turtlebot4'], "cannot simulate 'turtlebot4'; the types to simulate are "
-     'turtlebot2, turtlebot3, turtlebot3_burger, turtlebot3_waffle, turtlebot3_waffle_pi'),
-    (['--sim', '3', 'turtlebot2 turtlebot4 turtlebot5'],
-     "cannot simulate 'turtlebot4', 'turtlebot5'"),
-    (['--sim', '3', '--sim-types', 'generic'], "cannot simulate 'generic'"),
-    (['--demo', '--sim-types', ' '], "cannot simulate ''"),
-    (['sim:=3', 'sim_types:=turtlebot4'], "cannot simulate 'turtlebot4'"),
+    (['X Y:=3'], "'X Y:=3'"),
+    (['enabeling:=pedal'], 'enabling'),
+    (['restarter:=sh'], "'restarter'"),
+    (['gui:=foo'], 'standalone'),
+    (['enabling:=pedel'], "'pedel'"),
+    (['inputs:=joy,pedal'], "'joy,pedal'"),
+    (['required:=yes'], "'yes'"),
+    (['sim:=13'], "'13'"),
+    (['--sim', '3', 'turtlebot2 turtlebot4 turtlebot5'], "'turtlebot4', 'turtlebot5'"),
+    (['--demo', '--sim-types', ' '], "''"),
+    (['sim:=3', 'sim_types:=turtlebot4'], "'turtlebot4'"),
 ])
-def test_wrong_arguments_are_refused(checkout, arguments, said):
+def test_wrong_arguments_are_refused(checkout, arguments, named):
     status, output = checkout.run(*arguments)
     assert status == 2, output
-    assert said in output and '--help' in output
-    assert len(output.strip().splitlines()) <= 2, 'one line that says what is wrong'
+    assert named in output and '--help' in output
+    assert len(output.strip().splitlines()) <= 2
     assert output.replace('\n', '').isprintable() and len(output) <= 600
     assert checkout.calls == []
     assert not (checkout.root / 'build').exists()
     assert not list(checkout.root.parent.rglob('hacked'))
 
 
-@pytest.mark.parametrize('script', ['mhri_run.sh', 'mrhi_run.sh'])
-@pytest.mark.parametrize('flag', ['-h', '--help'])
-def test_help_is_the_manual(checkout, script, flag):
-    path = checkout.script.with_name(script)
-    status, output = checkout.run(flag, script=path)
+def test_help_is_the_manual(checkout):
+    status, output = checkout.run('-h', script=checkout.script.with_name('mrhi_run.sh'))
     assert status == 0 and checkout.calls == []
     source = checkout.script.read_text()
     options = set(re.findall(r'^ +(--[a-z-]+)\)', source, re.M))
@@ -130,17 +88,14 @@ def test_help_is_the_manual(checkout, script, flag):
 
 @pytest.mark.parametrize('arguments, launched', [
     ([], ['sim:=0']),
-    (['--sim', '3'], ['sim:=3']),
-    (['--sim', '12'], ['sim:=12']),
     (['--sim', '2', 'turtlebot2 turtlebot3_burger'],
-     ['sim:=2', 'sim_types:=turtlebot2 turtlebot3_burger']),
-    (['--sim', '2', '--sim-types', 'turtlebot2'], ['sim:=2', 'sim_types:=turtlebot2']),
-    (['--sim', '2', 'gui:=none'], ['sim:=2', 'gui:=none']),
-    (['robots:=bot1 bot2', 'gui:=standalone'], ['sim:=0', 'robots:=bot1 bot2', 'gui:=standalone']),
+     ['sim:=2', 'robots:=bot1 bot2', 'sim_types:=turtlebot2 turtlebot3_burger']),
+    (['--sim', '2', '--sim-types', 'turtlebot2'],
+     ['sim:=2', 'robots:=bot1 bot2', 'sim_types:=turtlebot2']),
+    (['--sim', '2', 'sim_prefix:=r'], ['sim:=2', 'sim_prefix:=r']),
+    (['--sim', '2', 'robots:=bot2'], ['sim:=2', 'robots:=bot2']),
+    (['--fresh'], ['sim:=0', 'fresh:=true']),
     (['enabling:=pedal', 'inputs:=joy pedal'], ['sim:=0', 'enabling:=pedal', 'inputs:=joy pedal']),
-    (['enabling:=', 'inputs:=none'], ['sim:=0', 'enabling:=', 'inputs:=none']),
-    (['--sim', '1', 'turtlebot3'], ['sim:=1', 'sim_types:=turtlebot3']),
-    (['--sim', '1', 'turtlebot3_waffle_pi'], ['sim:=1', 'sim_types:=turtlebot3_waffle_pi']),
 ])
 def test_right_arguments_reach_the_launch_file(checkout, arguments, launched):
     status, output = checkout.run('--master', 'http://127.0.0.1:1', *arguments)
@@ -155,12 +110,12 @@ def test_links_become_endpoints(checkout):
     installed.write_text('eclipse-zenoh==' + re.search(
         r'eclipse-zenoh==([0-9.]+)', checkout.script.with_name('common.sh').read_text()).group(1))
     status, output = checkout.run('--master', 'http://127.0.0.1:1', '--link',
-                                  'bot1=192.168.0.7 bot2=udp/192.168.0.8:7448 bot3', '--router',
+                                  'bot1=192.168.0.7 bot2=tcp/192.168.0.8:7448 bot3', '--router',
                                   'tls/192.0.2.1:7447')
     assert status == 0, output
     assert checkout.called('roslaunch') == [
         'roslaunch mhri mhri.launch sim:=0 links:=bot1=192.168.0.7:7447 '
-        'bot2=udp/192.168.0.8:7448 bot3 keys:=auto keep:=session router:=tls/192.0.2.1:7447']
+        'bot2=tcp/192.168.0.8:7448 bot3 keys:=auto keep:=session router:=tls/192.0.2.1:7447']
 
 
 def test_a_labs_own_source_can_be_the_enabling_one(checkout, tmp_path):
@@ -169,9 +124,9 @@ def test_a_labs_own_source_can_be_the_enabling_one(checkout, tmp_path):
     here = ['--master', 'http://127.0.0.1:1', 'mux_config:={}'.format(own)]
     assert checkout.run('enabling:=handle', *here)[0] == 0
     status, output = checkout.run('enabling:=pedal', *here)
-    assert status == 2 and "enabling: 'pedal' is not handle" in output
+    assert status == 2 and "'pedal'" in output and 'handle' in output
     own.write_text('sources: [')
-    assert checkout.run('enabling:=handle', *here)[0] == 0, 'the mux says what is wrong with it'
+    assert checkout.run('enabling:=handle', *here)[0] == 0  # the mux refuses the file
 
 
 @pytest.mark.parametrize('lacks', ['python3', 'yaml'])
@@ -186,7 +141,7 @@ def test_a_bare_machine_is_asked_again_when_all_is_installed(checkout, tmp_path,
         checkout.script.write_text(script.replace(
             'command -v python3', '[ ! -e "{}/yaml.py" ]'.format(missing)))
     status, output = checkout.run('--sim', '3', 'turtlebot4', PYTHONPATH=str(missing))
-    assert status == 2 and "cannot simulate 'turtlebot4'" in output
+    assert status == 2 and "'turtlebot4'" in output
     assert checkout.called('dpkg-query') and checkout.called('roslaunch') == []
 
 
@@ -194,9 +149,6 @@ def test_the_values_are_those_of_the_launch_file(checkout):
     launch = (checkout.root / 'launch' / 'mhri.launch').read_text()
     source = (checkout.root / 'utils' / 'host' / 'before_start.py').read_text()
     [gui] = re.findall(r"'gui': \((.*)\)", source)
-    [inputs] = re.findall(r'INPUTS = \((.*)\)', source)
     documented = re.search(r'name="gui".*?doc="(.*?)"', launch, re.S).group(1)
     for value in re.findall(r"'(\w+)'", gui):
         assert re.search(r'\b{}\b'.format(value), documented), value
-    found = re.findall(r"'(\w+)' in inputs.split", launch)
-    assert sorted(re.findall(r"'(\w+)'", inputs)) == sorted(found + ['none'])

@@ -1,17 +1,15 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Which addresses mhri_run.sh takes, and what it says about them and about the master."""
-import os
+import contextlib
 import socket
-import sys
 import threading
-from xmlrpc.server import SimpleXMLRPCServer
 
 import pytest
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
+from support.ros_system import free_port
 
-from support.ros_system import free_port  # noqa: E402
+pytestmark = pytest.mark.modest
 
 LOOPBACK = ['ROS_HOSTNAME=127.0.0.1', 'ROS_IP=127.0.0.1']
 
@@ -26,23 +24,9 @@ def quiet_port():
     return free_port()
 
 
-@pytest.fixture
-def master():
-    """Return the port of something that answers as a master does."""
-    server = SimpleXMLRPCServer(('127.0.0.1', 0), logRequests=False)
-    server.register_function(lambda caller: (1, 'ok', 7), 'getPid')
-    thread = threading.Thread(target=server.serve_forever, kwargs={'poll_interval': 0.01},
-                              daemon=True)
-    thread.start()
-    yield server.server_address[1]
-    server.shutdown()
-    server.server_close()
-    thread.join()
-
-
-@pytest.fixture
-def no_master():
-    """Return the port of something that answers, but not as a master does."""
+@contextlib.contextmanager
+def stranger():
+    """Give the port of something that answers, but not as a master does."""
     server = socket.create_server(('127.0.0.1', 0))
 
     def answer():
@@ -59,17 +43,14 @@ def no_master():
     server.close()
 
 
-@pytest.mark.parametrize('addresses, arguments, ip, said', [
-    ('192.0.2.7', [], '192.0.2.7', None),
-    ('192.0.2.7 198.51.100.2', [], '192.0.2.7', 'several addresses (192.0.2.7 198.51.100.2)'),
-    ('fd00::1 192.0.2.7 fe80::2', [], '192.0.2.7', None),
-    ('192.0.2.7 198.51.100.2', ['--ip', '198.51.100.2'], '198.51.100.2', None),
-    ('', ['--ip', '127.0.0.1'], '127.0.0.1', None),
-    ('', ['--sim', '3'], '127.0.0.1', None),
-    ('192.0.2.7', ['--sim', '3'], '127.0.0.1', None),
-    ('192.0.2.7', ['--sim', '3', '--ip', '192.0.2.7'], '192.0.2.7', None),
+@pytest.mark.parametrize('addresses, arguments, ip, several', [
+    ('192.0.2.7 198.51.100.2', [], '192.0.2.7', True),
+    ('fd00::1 192.0.2.7 fe80::2', [], '192.0.2.7', False),
+    ('192.0.2.7 198.51.100.2', ['--ip', '198.51.100.2'], '198.51.100.2', False),
+    ('', ['--sim', '3'], '127.0.0.1', False),
+    ('192.0.2.7', ['--sim', '3', '--ip', '192.0.2.7'], '192.0.2.7', False),
 ])
-def test_own_address(checkout, addresses, arguments, ip, said):
+def test_own_address(checkout, addresses, arguments, ip, several):
     # Port 11311 of this machine may be in use: the probe is not what this test is about.
     script = checkout.script.read_text()
     checkout.script.write_text(script.replace('  check_master\n', ''))
@@ -77,30 +58,22 @@ def test_own_address(checkout, addresses, arguments, ip, said):
     assert status == 0, output
     assert ros_variables(checkout) == [
         'ROS_HOSTNAME=' + ip, 'ROS_IP=' + ip, 'ROS_MASTER_URI=http://{}:11311'.format(ip)]
-    if said:
-        assert said in output and '--ip' in output
-    else:
-        assert 'several' not in output
+    assert ('({})'.format(addresses) in output) == several
 
 
-@pytest.mark.parametrize('addresses, said', [
-    ('', 'this computer has no IPv4 address:'),
-    ('fd00::1 fe80::2', 'no IPv4 address (only fd00::1 fe80::2, and ROS 1 needs one)'),
-    ('::ffff:192.0.2.7', 'no IPv4 address'),
-])
-def test_no_address_is_said_with_the_remedy(checkout, addresses, said):
+@pytest.mark.parametrize('addresses', ['', 'fd00::1 ::ffff:192.0.2.7'])
+def test_no_address_is_said_with_the_remedy(checkout, addresses):
     status, output = checkout.run(FAKE_ADDRESSES=addresses)
     assert status == 1
-    assert said in output and '--ip ADDR' in output and '--sim' in output
+    assert addresses in output and '--ip ADDR' in output and '--sim' in output
     assert checkout.calls == ['hostname -I'] or checkout.called('catkin_make', 'roslaunch') == []
 
 
-@pytest.mark.parametrize('addresses, has', [
-    ('192.0.2.7 fd00::1 192.0.2.8', '192.0.2.7 192.0.2.8 127.0.0.1'), ('', '127.0.0.1')])
-def test_somebody_elses_address_is_refused(checkout, addresses, has):
-    status, output = checkout.run('--ip', '198.51.100.2', FAKE_ADDRESSES=addresses)
+def test_somebody_elses_address_is_refused(checkout):
+    status, output = checkout.run('--ip', '198.51.100.2',
+                                  FAKE_ADDRESSES='192.0.2.7 fd00::1 192.0.2.8')
     assert status == 2
-    assert '198.51.100.2 is not an address of this computer; it has {} ('.format(has) in output
+    assert '198.51.100.2' in output and '192.0.2.7 192.0.2.8 127.0.0.1' in output
     assert [call for call in checkout.calls if call != 'hostname -I'] == []
 
 
@@ -127,19 +100,12 @@ def test_what_the_shell_had_is_not_used(checkout, quiet_port):
     assert ros_variables(checkout) == LOOPBACK + ['ROS_MASTER_URI=' + uri]
 
 
-def test_running_master_is_joined(checkout, master):
-    status, output = checkout.run('--sim', '1', '--master', 'http://127.0.0.1:{}'.format(master))
-    assert status == 0, output
-    assert 'a ROS master runs at' in output and 'joining it' in output
-    assert checkout.called('roslaunch')
-
-
-def test_port_taken_by_something_else(checkout, no_master):
-    uri = 'http://127.0.0.1:{}'.format(no_master)
-    status, output = checkout.run('--master', uri)
+def test_port_taken_by_something_else(checkout):
+    with stranger() as port:
+        uri = 'http://127.0.0.1:{}'.format(port)
+        status, output = checkout.run('--master', uri)
     assert status == 1
-    assert 'something other than a ROS master uses ' + uri in output and '--master' in output
-    assert 'end it' not in output
+    assert uri in output and '--master' in output
     assert checkout.called('roslaunch') == []
 
 
@@ -149,7 +115,7 @@ def test_master_that_does_not_answer(checkout):
         uri = 'http://127.0.0.1:{}'.format(server.getsockname()[1])
         status, output = checkout.run('--master', uri)
     assert status == 1
-    assert uri + ' takes the connection but does not answer' in output and 'ss -ltnp' in output
+    assert uri in output and 'ss -ltnp' in output
     assert ' end ' not in output and checkout.called('roslaunch') == []
 
 
@@ -157,15 +123,12 @@ def test_master_that_is_not_there_elsewhere(checkout):
     # 192.0.2.0/24 is for documentation: nobody answers there.
     status, output = checkout.run('--master', 'http://192.0.2.99:11311')
     assert status == 1
-    assert 'there is no ROS master at http://192.0.2.99:11311' in output
+    assert 'http://192.0.2.99:11311' in output
     assert checkout.called('roslaunch') == []
 
 
 def test_demo_has_a_master_of_its_own(checkout):
     checkout.run('--demo', FAKE_ADDRESSES='')
-    checkout.run('--demo', FAKE_ADDRESSES='')
-    uris = [line for line in checkout.calls if line.startswith('ROS_MASTER_URI=')]
-    assert len(uris) == 2
-    for uri in uris:
-        assert uri.startswith('ROS_MASTER_URI=http://127.0.0.1:')
-        assert not uri.endswith(':11311')
+    uri, = [line for line in checkout.calls if line.startswith('ROS_MASTER_URI=')]
+    name, _, port = uri.rpartition(':')
+    assert name == 'ROS_MASTER_URI=http://127.0.0.1' and 12000 <= int(port) < 32768

@@ -5,8 +5,8 @@ import os
 from pathlib import Path
 import signal
 import subprocess
-import time
 
+from support.ros_system import wait_for
 import pytest
 
 SCRIPT = Path(__file__).resolve().parents[2] / 'utils' / 'host' / 'until_closed.sh'
@@ -80,7 +80,4 @@ def test_script_that_is_killed_closes_the_panel(tmp_path):
     child = number_of(process)
     os.kill(child, signal.SIGKILL)
     process.communicate(timeout=60)
-    end = time.monotonic() + 60.0
-    while not closed.exists():
-        assert time.monotonic() < end
-        time.sleep(0.02)
+    wait_for(closed.exists)

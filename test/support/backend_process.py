@@ -5,7 +5,7 @@
 ``backend_process.py LOG``; a line of the standard input is ``select NAME...``,
 ``take``, ``mode SOURCE``, ``stick FORWARD TURN``, ``view ROBOT KEY...`` or
 ``limits LINEAR ANGULAR``. A line of the log is: when [s, CLOCK_MONOTONIC], how long one round took
-[s], events, (status, mode, stop_all).
+[s], events, (status, mode, stop_all). "loaded" is said once a robot has its feeds.
 """
 import sys
 import threading
@@ -26,7 +26,7 @@ def main():
         done.set()
 
     threading.Thread(target=read, daemon=True).start()
-    repeat_at = 0.0
+    repeat_at, loaded = 0.0, False
     with open(sys.argv[1], 'a', buffering=1) as log:
         while not done.wait(0.05):
             begun = time.monotonic()
@@ -36,6 +36,9 @@ def main():
                 backend.repeat_selection()
                 repeat_at = begun + 0.5
             events, view = backend.take_events(), backend.view()
+            if not loaded and any(backend.feeds(robot.name) for robot in view.robots):
+                loaded = True
+                print('loaded', flush=True)
             log.write('{!r} {:.4f} {} {!r}\n'.format(
                 begun, time.monotonic() - begun, len(events),
                 (view.status, view.mode, view.stop_all)))
@@ -51,7 +54,7 @@ def obey(backend, word, *names):
     elif word == 'stick':
         backend.send_stick(*map(float, names))
     elif word == 'view':
-        backend.feeds(names[0]).want(names[1:])
+        backend.feeds(names[0]).request(names[1:])
     elif word == 'limits':
         backend.request_limits(*map(float, names))
     else:

@@ -151,7 +151,8 @@ class Radio:
                          'did': {name: channel.counts[number].figures(took_s) for name, channel
                                  in zip(DIRECTIONS, self._channels)}})
         took_s = now_s - begun_s
-        return {'cores': (time.process_time() - self._used_s) / took_s, 'rows': rows}
+        return {'cores': (time.process_time() - self._used_s) / took_s, 'ended_s': now_s,
+                'rows': rows}
 
 
 def told(values):

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """One robot driven by the stick's brake through walls; what its laser sends is as its type's does.
 
-No ROS and no clock: scans go the way of the gates, raw, by the rule for its type.
+No ROS and no clock: scans go the way of the mux, raw, by the rule for its type.
 """
 import math
 import random
@@ -10,7 +10,7 @@ import random
 import numpy as np
 
 from mhri.base.limits import Velocity
-from mhri.base.mocap import Pose
+from mhri.base.geometry import Pose
 from mhri.driving.stick_brake import StickBrake
 from mhri.sensors.laser_scan import laser_scan
 from mhri.sim.sensors import Laser

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Robots behind a bad radio, by one ROS master for all and by the link, and an operator of them.
 
-The robots (simulated, each with its guard) are in a network namespace of their own; mux, gates, a
+The robots (simulated, each with its guard) are in a network namespace of their own; mux, a
 master and the calling process as the operator are in another; between them is the radio of
 ``bad_radio``. The robots of a way are driven and looked at together, those of the others are left
 alone: then next to nothing of theirs goes over the radio.
@@ -19,6 +19,7 @@ import time
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
 
+from support import graph  # noqa: E402
 from support.authority import Authority  # noqa: E402
 from support.bad_radio import BadRadio, FAR_IP, NEAR_IP, Place  # noqa: E402
 from support.ros_system import System, wait_for  # noqa: E402
@@ -27,12 +28,11 @@ HERE = os.path.abspath(__file__)
 GUARD = os.path.join(os.path.dirname(HERE), '..', '..', 'utils', 'remote', 'mhri_guard')
 TCPROS = 'TCPROS'
 # What the names of a way's robots begin with; all but TCPROS are protocols of the link.
-WAYS = {TCPROS: 'ros', 'udp': 'udp', 'tcp': 'tcp', 'tls': 'tls', 'quic': 'quic',
-        'router_near': 'near', 'router_far': 'far'}
+WAYS = {TCPROS: 'ros', 'tcp': 'tcp', 'tls': 'tls', 'router_near': 'near', 'router_far': 'far'}
 # By a router, on which side of the radio.
 ROUTED = {'router_near': NEAR_IP, 'router_far': FAR_IP}
 # Of these, those that need keys.
-SECRET = ('tls', 'quic') + tuple(ROUTED)
+SECRET = ('tls',) + tuple(ROUTED)
 FIRST_PORT, FAR_MASTER = 7447, 11411
 COMMAND, ODOMETRY = 'teleop/input', 'odom'
 PICTURE = 'camera/rgb/image_raw/compressed'
@@ -42,7 +42,7 @@ STICK_S, SHOW_S = 0.05, 1.0 / 30.0
 # Of the stick while it is held: each event has a value of its own, by which it is known again. A
 # group of robots behind a slow link drives slower, but on the same curve.
 LEAST, STEP, VALUES, TURN = 0.2, 0.0005, 1000, 0.6
-PATIENCE_S = 120.0
+TIMEOUT_S = 120.0
 # The operator's limits are 0.5 m/s and 1.5 rad/s: of a command, so much times the curvature is the
 # part of the stick that goes forward.
 CURVE = TURN * 1.5 / 0.5
@@ -128,7 +128,7 @@ class Shown:
         self.poses.append(self.pose_age_s())
 
     def live(self):
-        """Tell whether everything comes in time."""
+        """Return whether everything comes in time."""
         return self.pose_age_s() < 0.5 and self.pictures and self.pictures[-1][1] < 1.0
 
     def forget(self):
@@ -141,17 +141,17 @@ class Operator:
 
     def __init__(self):
         import rospy
-        from mhri.msg import ControlMode, GatesState, RobotSelect
+        from mhri.msg import ControlMode, DriveState, RobotSelect
         from sensor_msgs.msg import Joy
         self._joy_class = Joy
-        self._joy = rospy.Publisher('/mux_in/pedal', Joy, queue_size=1, tcp_nodelay=True)
-        self._select = rospy.Publisher('/robot_controller/robot_select', RobotSelect, queue_size=1,
+        self._joy = rospy.Publisher(graph.PEDAL, Joy, queue_size=1, tcp_nodelay=True)
+        self._select = rospy.Publisher(graph.SELECT, RobotSelect, queue_size=1,
                                        latch=True)
-        self._mode = rospy.Publisher('/mux_in/mode_select', ControlMode, queue_size=1, latch=True)
+        self._mode = rospy.Publisher(graph.MODE_SELECT, ControlMode, queue_size=1, latch=True)
         self._mode.publish('pedal')
         self.robots = []
-        self._gates = {}
-        rospy.Subscriber('/gates/state', GatesState, self._on_state)
+        self._drives = {}
+        rospy.Subscriber(graph.DRIVE_STATE, DriveState, self._on_state)
         self.holding = False
         # {value: when it was sent}, and how often the stick was held
         self.sent = {}
@@ -159,17 +159,17 @@ class Operator:
         threading.Thread(target=self._run, daemon=True).start()
 
     def _on_state(self, message):
-        self._gates = {gate.name: gate for gate in message.robots}
+        self._drives = {drive.name: drive for drive in message.robots}
 
     def ready(self):
-        """Tell whether the robots would move."""
-        gates = [self._gates.get(name) for name in self.robots]
-        return all(gate is not None and gate.guarded and not gate.stands for gate in gates)
+        """Return whether the robots would move."""
+        drives = [self._drives.get(name) for name in self.robots]
+        return all(drive is not None and drive.guarded and not drive.stands for drive in drives)
 
     def stopped(self, name):
-        """Tell whether the guard of a robot holds a stop."""
-        gate = self._gates.get(name)
-        return gate is not None and gate.stop_confirmed
+        """Return whether the guard of a robot holds a stop."""
+        drive = self._drives.get(name)
+        return drive is not None and drive.stop_confirmed
 
     def _run(self):
         import rospy
@@ -219,7 +219,8 @@ class World:
                       for way in ways}
         self.shown = {name: Shown(name) for names in self.names.values() for name in names}
         self._ears = {}
-        self._keys = {}
+        #: folders with the keys of all, also of a host ``gallery`` that only watches
+        self.keys = {}
         self._folder = tempfile.TemporaryDirectory()
         self.far = Place()
         self.radio = BadRadio(self.far)
@@ -254,12 +255,11 @@ class World:
             self.system.start(*self.far.command('env', 'ROS_IP=' + FAR_IP, 'rosmaster', '--core',
                                                 '-p', str(FAR_MASTER)))
         self.system.node('mux')
-        self.system.node('gates')
         self._make_keys([name for way in SECRET for name in self.names.get(way, [])])
         port = FIRST_PORT
         for way, names in self.names.items():
             subprocess.run(self._words(way, sys.executable, '-c', TYPES, *names), check=True,
-                           timeout=PATIENCE_S, env=self.system.env)
+                           timeout=TIMEOUT_S, env=self.system.env)
             for name, (x_m, y_m) in zip(names, PLACES):
                 self._start_robot(way, name, x_m, y_m)
                 if way != TCPROS:
@@ -283,19 +283,19 @@ class World:
         """Make keys for the host and for robots, if there are any."""
         if robots:
             authority = Authority(Path(self._folder.name))
-            for kind, name in [('host', 'lab'), ('router', 'hub')] + [
+            for words in [('host', 'lab'), ('host', 'gallery', '--watch'), ('router', 'hub')] + [
                     ('robot', name) for name in robots]:
-                authority.run(kind, name)
-            self._keys = {name: authority.put(name) for name in ['lab', 'hub'] + robots}
+                authority.run(*words)
+            self.keys = {name: authority.put(name) for name in ['lab', 'gallery', 'hub'] + robots}
 
     def _link(self, way, name, port):
         endpoint = '{}/{}:{}'.format('tls' if way in ROUTED else way,
                                      ROUTED.get(way, FAR_IP), port)
         listens, calls = ('--router', '--router') if way in ROUTED else ('--listen', '--connect')
-        keys = [str(self._keys[who]) if way in SECRET else 'off' for who in (name, 'lab')]
+        keys = [str(self.keys[who]) if way in SECRET else 'off' for who in (name, 'lab')]
         link = [sys.executable, '-c', 'from mhri.nodes.mhri_link import main; main()', '--side']
         if way in ROUTED:
-            hub = link + ['router', '--listen', endpoint, '--keys', str(self._keys['hub'])]
+            hub = link + ['router', '--listen', endpoint, '--keys', str(self.keys['hub'])]
             self.system.start(*hub if way == 'router_near' else self._words(way, *hub))
         self.system.start(*self._words(way, *link, 'robot', '--name', name, listens, endpoint,
                                        '--keys', keys[0], '__ns:=/' + name))
@@ -333,7 +333,7 @@ class World:
         looked = [self.shown[name] for name in self.names[way]]
         wait_for(lambda: self.operator.ready() and all(shown.live() for shown in looked)
                  and all(been for _, been in self.at_the_robots(way).values()),
-                 PATIENCE_S, 'the robots by ' + way, poll_s=0.1)
+                 TIMEOUT_S, 'the robots by ' + way, poll_s=0.1)
 
     def measure(self, way, row, outage_s, drive_s):
         """Return (figures of one case, what the radio did).

@@ -7,7 +7,7 @@ import random
 
 import numpy as np
 
-from mhri.camera.raw_image import metres
+from mhri.camera.depth_codec import metres
 from mhri.sensors.brake import NARROW_M
 from mhri.sensors.depth_beams import DepthBeams
 from mhri.sensors.point_cloud import CloudError, Lens

@@ -12,7 +12,7 @@ from mhri.robots.discovery import IgnoreList
 FOLDER = os.path.join(os.path.dirname(__file__), '..', '..', 'resource', 'robots')
 TYPES = load_robot_types([(name, open(os.path.join(FOLDER, name), encoding='utf-8').read())
                           for name in sorted(os.listdir(FOLDER))])[0]
-IGNORE = IgnoreList(('/rosout', '/mux', '/mhri_*'), ('mux', 'gates', 'robot_controller', 'mhri_*'))
+IGNORE = IgnoreList(('/rosout', '/mux', '/mhri_*'), ('mux', 'robot_controller', 'mhri_*'))
 TWIST, ODOMETRY, BOOL = 'geometry_msgs/Twist', 'nav_msgs/Odometry', 'std_msgs/Bool'
 HOST_IP, BOT_IP = '192.0.2.1', '192.0.2.7'
 COMPUTER = Computer(
@@ -21,21 +21,20 @@ COMPUTER = Computer(
     python_paths=('/ws/src/mhri/src/mhri',))
 KINDS = {'/bot1/cmd_vel': TWIST, '/bot1/odom': ODOMETRY, '/robot_controller/twist': TWIST,
          '/mux/mode': 'mhri/ControlMode', '/robot_controller/robot_select': 'mhri/RobotSelect',
-         '/gates/state': 'mhri/GatesState'}
+         '/mux/state': 'mhri/DriveState'}
 
 
 class World:
-    """A healthy system: mux, gates, a panel, and one robot on another computer; to be spoilt."""
+    """A healthy system: mux, panel, and one robot on another computer; to be spoilt."""
 
     def __init__(self):
-        self.hosts = {'/mux': HOST_IP, '/mhri_gates': HOST_IP, '/mhri_panel': HOST_IP,
-                      '/bot1/base': BOT_IP}
+        self.hosts = {'/mux': HOST_IP, '/mhri_panel': HOST_IP, '/bot1/base': BOT_IP}
         self.publish = {'/mux/mode': ['/mux'], '/robot_controller/twist': ['/mux'],
                         '/robot_controller/robot_select': ['/mhri_panel'],
-                        '/gates/state': ['/mhri_gates'],
-                        '/bot1/cmd_vel': ['/mhri_gates'], '/bot1/odom': ['/bot1/base']}
+                        '/mux/state': ['/mux'], '/bot1/cmd_vel': ['/mux'],
+                        '/bot1/odom': ['/bot1/base']}
         self.subscribe = {'/bot1/cmd_vel': ['/bot1/base'], '/bot1/odom': ['/mhri_panel'],
-                          '/robot_controller/twist': ['/mhri_gates']}
+                          '/mux/state': ['/mhri_panel']}
         self.kinds = dict(KINDS)
         self.parameters = {'bot1': {'robot_type': 'generic'}}
         self.changed = {}
@@ -43,7 +42,7 @@ class World:
         self.extra = {}
         self.streams = {}
         self.seen_at = {}
-        self.wanted = ()
+        self.requested = ()
         self.again = None
 
     def topics(self, node, group):
@@ -74,7 +73,8 @@ class World:
         streams.update(self.streams)
         facts = Facts(
             computer=COMPUTER, master=Master('http://192.0.2.1:11311', HOST_IP, 11311),
-            graph=self.graph(), nodes=nodes, streams=tuple(streams.values()), wanted=self.wanted,
+            graph=self.graph(), nodes=nodes, streams=tuple(streams.values()),
+            requested=self.requested,
             known={kind: None if kind.endswith('/Odd') else 'same'
                    for kind in self.kinds.values()})
         if self.again:
@@ -84,7 +84,7 @@ class World:
 
     def wrong(self):
         findings = diagnose(self.facts(), TYPES, IGNORE)
-        assert all(item.shows and item.remedy for item in findings if item.severity != FINE)
+        assert all(item.symptom and item.remedy for item in findings if item.severity != FINE)
         return [item for item in findings if item.severity != FINE]
 
 

@@ -141,7 +141,7 @@ class StreamNode:
         self.send(EVENT.pack(1700000000, 0, ecodes.EV_SYN, ecodes.SYN_DROPPED, 0))
 
     def grabbed(self):
-        """Tell whether a program that lives has the device for itself."""
+        """Return whether a program that lives has the device for itself."""
         return grab_holder(self._state, self._terminal) is not None
 
     def forbid(self, forbidden=True):

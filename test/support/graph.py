@@ -8,14 +8,16 @@ that it outlives a change of what is inside. Where a name changes, it changes he
 # Inputs.
 STICK, PAD, PEDAL, VOICE = '/mux_in/joy', '/mux_in/ps3joy', '/mux_in/pedal', '/mux_in/voice'
 MODE_SELECT, MODE = '/mux_in/mode_select', '/mux/mode'
-TASK_INPUT = '/mux_in/task'
+TASK_INPUT, ACCESSORY = '/mux_in/task', '/mux_in/accessory'
+SOURCES = '/mux/sources'
+HEARD, PANEL_REQUEST = '/mhri_voice/heard', '/panel_in/request'
 
 # The operator's wish, and what is done with it.
 SELECT = '/robot_controller/robot_select'
-DRIVE_STATE = '/gates/state'
-TAKE_CONTROL = '/gates/take_control'
-SET_MOTOR_POWER = '/gates/set_motor_power'
-SET_STOP_ALL = '/mux/set_stop_all'
+DRIVE_STATE = '/mux/state'
+TAKE_CONTROL = '/mux/take_control'
+SET_MOTOR_POWER = '/mux/set_motor_power'
+SET_STOP_ALL, STOP_ROBOTS = '/mux/set_stop_all', '/mux/stop_robots'
 STOP_ALL, COMMAND = '/robot_controller/stop_all', '/robot_controller/twist'
 
 # Tasks.
@@ -25,11 +27,6 @@ RUN_TASK, TASK_LIST = '/mhri_tasks/run', '/mhri_tasks/list'
 def guard(robot, what):
     """Return a topic of a robot's guard: 'command', 'echo' or 'dropped'."""
     return '/{}/mhri_guard/{}'.format(robot, what)
-
-
-def motion_capture(robot):
-    """Return the topic of a robot's pose as motion capture sees it."""
-    return '/vrpn_client_node/{}/pose'.format(robot)
 
 
 def navigation(robot, what):

@@ -23,10 +23,12 @@ from mhri.base.gui import theme  # noqa: E402
 from mhri.doctor.facts import FINE, UNRESOLVED  # noqa: E402
 from mhri.doctor.gui.doctor_page import DoctorPage  # noqa: E402
 from mhri.doctor.judgement import diagnose  # noqa: E402
-from mhri.drill.gui.faults_page import FaultsPage, TITLE  # noqa: E402
+from mhri.drill.gui.faults_page import FaultsPage  # noqa: E402
 from mhri.drill.page import page_of  # noqa: E402
 from mhri.drill.rehearsal import Rehearsal  # noqa: E402
 from mhri.graph.ros.resources import resource_path  # noqa: E402
+from mhri.map.gui.map_pane import MapPane  # noqa: E402
+from mhri.session.gui.note_bar import note_button  # noqa: E402
 from mhri.session.gui.record_button import RecordButton  # noqa: E402
 from support import doctor_world, layout_pictures  # noqa: E402
 from support.drills import drill, NAMES  # noqa: E402
@@ -55,13 +57,12 @@ def draw_doctor(path):
 
 def draw_faults(path):
     """Draw the list of faults, two of which a robot has."""
-    page, faults = DoctorPage(), FaultsPage()
+    page = FaultsPage()
     theme.apply(page, theme.DARK)
-    page.add_part(TITLE, faults).setChecked(True)
     page.setContentsMargins(8, 8, 8, 8)
     page.resize(*FAULTS_SIZE)
-    faults.show_robots(('bot1', 'bot2'))
-    faults.show_answer('bot1', True, 'bot1: delay each way 0.4 s, 7 s left; laser silent')
+    page.show_robots(('bot1', 'bot2'))
+    page.show_answer('bot1', True, 'bot1: delay each way 0.4 s, 7 s left; laser silent')
     page.show()
     QApplication.processEvents()
     page.grab().save(path)
@@ -82,7 +83,9 @@ def draw_one(application, path):
     layout_pictures.Scene.frames = layout_pictures.frames()
     scene = layout_pictures.Scene(application, resource_path(), ONE_SIZE, 1)
     scene.screen.drawer_button.setChecked(False)
-    scene.screen.small_row.insertWidget(1, RecordButton(scene.screen.foot))
+    scene.screen.stage.set_map(MapPane(scene.screen.stage))
+    for place, button in enumerate((RecordButton, note_button), 1):
+        scene.screen.small_row.insertWidget(place, button(scene.screen.foot))
     scene.show().grab().save(path)
 
 

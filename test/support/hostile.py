@@ -37,7 +37,7 @@ def seed_of(default):
 
 
 def is_long():
-    """Tell whether the long form is wanted (``MHRI_LONG=1``)."""
+    """Return whether the long form is wanted (``MHRI_LONG=1``)."""
     return os.environ.get('MHRI_LONG', '') not in ('', '0')
 
 

@@ -34,7 +34,7 @@ class Fixed:
 
 def torn_call(uri, header, body, wait_s=0.2):
     """Speak to a service's port as nobody should."""
-    with socket.create_connection((uri.hostname, uri.port), 1.0) as link:
+    with socket.create_connection((uri.hostname, uri.port), 20.0) as link:
         link.settimeout(wait_s)
         try:
             link.sendall(header + body)

@@ -10,35 +10,16 @@ import subprocess
 import sys
 import termios
 import threading
-import time
 
 import cv2
 
+from support import graph
 from support import machines
-from support.ros_system import wait_for
+from support.paths import SUPPORT
+from support.ros_system import System, wait_for
 
 HOST_SCRIPTS = Path(__file__).resolve().parents[2] / 'utils' / 'host'
 START_S = LONG_S = 300.0
-# Writes what a robot does and is told as the robot itself sees it, link or no link, in rows of
-# numbers: time, speeds, place; or time and speeds of a command.
-OBSERVER = '''
-import os, sys, time, rospy
-from geometry_msgs.msg import Twist
-from nav_msgs.msg import Odometry
-def write(*numbers):
-    # At once: rows of two threads would get into each other.
-    os.write(1, (' '.join('%.5f' % number for number in (time.monotonic(),) + numbers)
-                 + '\\n').encode('ascii'))
-def moved(m):
-    t, p = m.twist.twist, m.pose.pose.position
-    write(t.linear.x, t.angular.z, p.x, p.y)
-rospy.init_node('observer', anonymous=True)
-name, command = sys.argv[1:]
-rospy.Subscriber('/%s/odom' % name, Odometry, moved, queue_size=10, tcp_nodelay=True)
-rospy.Subscriber('/%s/%s' % (name, command), Twist, lambda m: write(m.linear.x, m.angular.z),
-                 queue_size=10, tcp_nodelay=True)
-rospy.spin()
-'''
 COMMANDS = {'bot1': 'teleop/input', 'bot2': 'cmd_vel'}
 GUARDED = ('bot1',)
 
@@ -156,7 +137,7 @@ class Lab:
         with log.open('w') as file:
             subprocess.Popen(
                 robot.command('env', 'ROS_IP=' + robot.ip, 'bash', '-c', setup, sys.executable,
-                              '-c', OBSERVER, name, COMMANDS[name]),
+                              str(SUPPORT / 'observer.py'), name, COMMANDS[name]),
                 env=self.system.env, stdin=subprocess.DEVNULL, stdout=file,
                 stderr=(robot.folder / 'observer.log').open('w'))
 
@@ -187,6 +168,23 @@ class Lab:
             terminal.process.wait(20)
 
 
+def running_lab(request, folder, trusted=False):
+    """Yield a :class:`Lab`, for a fixture; what everybody said is printed if a test fails.
+
+    :param trusted: whether the operator knows the robots' keys
+    """
+    with machines.Lan(folder) as lan, System(ip=machines.HOST_IP) as system:
+        system.start_master()
+        built = Lab(lan, system, folder)
+        for robot in built.robots.values() if trusted else ():
+            built.trust(robot)
+        failed = request.session.testsfailed
+        yield built
+        if request.session.testsfailed > failed:
+            built.tell()
+        built.close()
+
+
 class Operator:
     """Mux and panel on the host, both robots selected, and a stick."""
 
@@ -199,29 +197,19 @@ class Operator:
         # As the node of the pedal: it may choose the mode.
         rospy.init_node('mhri_pedal', disable_signals=True)
         self.system.node('mux', '__name:=mux')
-        self.system.node('gates')
         self.system.node('panel', '--fresh', '--select', 'bot1 bot2', '__name:=mhri_panel')
         self.witnesses = {name: Witness(name) for name in ('bot1', 'bot2')}
         self.stick = Stick()
-        self._mode = rospy.Publisher('/mux_in/mode_select', ControlMode, queue_size=1, latch=True)
+        self._mode = rospy.Publisher(graph.MODE_SELECT, ControlMode, queue_size=1, latch=True)
         self._mode.publish('pedal')
 
     def drive(self, *names):
         """Drive in a circle; return when these robots do."""
-        def through():
-            self.stick.hold(0.0, 0.0)
-            time.sleep(0.15)
-            self.stick.hold(0.2, 0.6)
-            deadline = time.monotonic() + 2.0
-            while time.monotonic() < deadline:
-                if all(self.witnesses[name].moving() for name in names):
-                    return True
-                time.sleep(0.02)
-            return False
-        wait_for(through, START_S, '{} to be driven'.format(' and '.join(names)))
+        self.stick.drive(0.2, 0.6, lambda: all(self.witnesses[name].moving() for name in names),
+                         START_S, '{} to be driven'.format(' and '.join(names)))
 
     def close(self):
         """Let go of the stick and leave the graph."""
         import rospy
-        self.stick.unplug()
+        self.stick.silence()
         rospy.signal_shutdown('done')

@@ -10,22 +10,13 @@ import sys
 import threading
 import time
 
-import psutil
 
-from support.ros_system import free_port, System, wait_for
+from support import graph
+from support.paths import SUPPORT
+from support.ros_system import child_processes, free_port, System, wait_for
 
 # Slow computers start slowly.
 LONG_S = 90.0
-OBSERVER = '''
-import os, time, rospy
-from nav_msgs.msg import Odometry
-def moved(m):
-    t = m.twist.twist
-    os.write(1, b'%.4f %.4f %.4f\\n' % (time.monotonic(), t.linear.x, t.angular.z))
-rospy.init_node('observer')
-rospy.Subscriber('/bot1/odom', Odometry, moved, queue_size=10, tcp_nodelay=True)
-rospy.spin()
-'''
 
 
 class Operator:
@@ -36,8 +27,8 @@ class Operator:
         from mhri.msg import ControlMode, RobotSelect
         from support.robots import Stick
         self.stick = Stick()
-        self._mode = rospy.Publisher('/mux_in/mode_select', ControlMode, queue_size=1, latch=True)
-        self._select = rospy.Publisher('/robot_controller/robot_select', RobotSelect,
+        self._mode = rospy.Publisher(graph.MODE_SELECT, ControlMode, queue_size=1, latch=True)
+        self._select = rospy.Publisher(graph.SELECT, RobotSelect,
                                        queue_size=1, latch=True)
         self._mode.publish('pedal')
         threading.Thread(target=self._run, args=(rospy.is_shutdown,), daemon=True).start()
@@ -70,9 +61,8 @@ class Linked:
         self.link_of_robot = self.robot.launch(
             'link.launch', 'side:=robot', 'name:=bot1', 'listen:=' + self.endpoint,
             'keys:={}'.format(robot_keys))
-        self.observer = self.robot.start(sys.executable, '-c', OBSERVER)
+        self.observer = self.robot.start(sys.executable, str(SUPPORT / 'observer.py'), 'bot1')
         self.host.node('mux', '__name:=mux')
-        self.host.node('gates')
         self.link_of_host = self.start_host_side()
 
     def start_host_side(self, *more):
@@ -84,36 +74,29 @@ class Linked:
 
     def node_of_robot(self):
         """Return the process of the robot's side, which roslaunch starts again if it is killed."""
-        def find():
-            for child in psutil.Process(self.link_of_robot.pid).children():
-                try:
-                    if any(part.endswith('/mhri_link') for part in child.cmdline()):
-                        return child
-                except psutil.NoSuchProcess:
-                    pass
-            return None
-        return wait_for(find, LONG_S, 'the side of the robot')
+        return wait_for(lambda: child_processes('/mhri_link', self.link_of_robot.pid), LONG_S,
+                        'the side of the robot')[0]
 
-    def watch_gates(self):
-        """Begin to read /gates/state, for :meth:`gate`."""
+    def watch_drive(self):
+        """Begin to read /mux/state, for :meth:`row`."""
         import rospy
-        from mhri.msg import GatesState
-        rospy.Subscriber('/gates/state', GatesState, self._states.append, queue_size=1)
+        from mhri.msg import DriveState
+        rospy.Subscriber(graph.DRIVE_STATE, DriveState, self._states.append, queue_size=1)
 
-    def gate(self):
-        """Return what the gates said last of bot1."""
-        return wait_for(lambda: next((gate for gate in (
-            self._states[-1].robots if self._states else ()) if gate.name == 'bot1'), None),
-            LONG_S, 'the gates to know bot1')
+    def row(self):
+        """Return what the mux said last of bot1."""
+        return wait_for(lambda: next((drive for drive in (
+            self._states[-1].robots if self._states else ()) if drive.name == 'bot1'), None),
+            LONG_S, 'the mux to know bot1')
 
     def rows(self):
         """Return what the robot did, by its own odometry: (time, m/s, rad/s) in a list."""
         with open(self.observer.log) as log:
             rows = [line.split() for line in log.read().splitlines()[-400:]]
-        return [tuple(map(float, row)) for row in rows if len(row) == 3]
+        return [tuple(map(float, row[:3])) for row in rows if len(row) == 5]
 
     def moves(self):
-        """Tell whether the robot moves now."""
+        """Return whether the robot moves now."""
         rows = self.rows()
         return bool(rows) and time.monotonic() - rows[-1][0] < 0.5 and abs(rows[-1][2]) > 0.05
 
@@ -126,18 +109,14 @@ class Linked:
         return None
 
     def drive(self, operator, timeout_s=LONG_S):
-        """Turn the robot on the spot; the gates ask for neutral first."""
-        def through():
-            operator.stick.hold(0.0, 0.0)
-            time.sleep(0.15)
-            operator.stick.hold(0.0, 0.4)
-            deadline = time.monotonic() + 0.8
-            while time.monotonic() < deadline:
-                if self.moves():
-                    return True
-                time.sleep(0.02)
-            return False
-        wait_for(through, timeout_s, 'bot1 to move')
+        """Turn the robot on the spot, from rest; the mux asks for neutral first."""
+        self.let_stand(operator)
+        operator.stick.drive(0.0, 0.4, self.moves, timeout_s, 'bot1 to move')
+
+    def let_stand(self, operator):
+        """Centre the stick, and wait until the robot stands."""
+        operator.stick.hold(0.0, 0.0)
+        wait_for(lambda: not self.moves(), LONG_S, 'bot1 to stand', 0.01)
 
     def close(self):
         """End both systems."""

@@ -3,7 +3,7 @@
 """The screen in this process, with robots, to be measured."""
 from support.ros_system import wait_for
 
-PATIENCE_S = 60.0
+TIMEOUT_S = 60.0
 
 
 class LiveScreen:
@@ -16,21 +16,21 @@ class LiveScreen:
 
     def __init__(self, size, restored=(), selected=()):
         from python_qt_binding.QtWidgets import QApplication
-        from mhri.screen.presenters.screen_host import ScreenHost
+        from mhri.screen.presenters.screen_presenter import ScreenPresenter
         from mhri.screen.ros.backend import ScreenBackend
         self._app = QApplication(['panel'])
-        self.host = ScreenHost(ScreenBackend(['panel']))
-        self.operator = self.host.operator
-        self.host.screen.resize(*size)
-        self.host.screen.show()
-        self.host.start(restored, selected)
+        self.presenter = ScreenPresenter(ScreenBackend(['panel']))
+        self.operator = self.presenter.operator
+        self.presenter.screen.resize(*size)
+        self.presenter.screen.show()
+        self.presenter.start(restored, selected)
         names = (*restored, *selected)
-        self.until(lambda: len(self.host.windows) == len(names) and all(
+        self.until(lambda: len(self.presenter.windows) == len(names) and all(
             self.operator.robot_view(name).link == 'live' for name in names), 'the robots')
 
     def until(self, condition, what):
         """Let Qt work until a condition comes true."""
-        wait_for(lambda: (self._app.processEvents(), condition())[1], PATIENCE_S, what)
+        wait_for(lambda: (self._app.processEvents(), condition())[1], TIMEOUT_S, what)
 
     def run(self, seconds):
         """Let Qt work for some seconds, without a measurement's own work."""

@@ -26,8 +26,6 @@ PACKAGES = Path(__file__).resolve().parent / 'robot_packages'
 # What a robot's setup.bash says; the rest of the environment is that of a fresh login.
 SETUP_VARIABLES = ('PATH', 'PYTHONPATH', 'LD_LIBRARY_PATH', 'ROS_DISTRO',
                    'ROS_ETC_DIR', 'ROS_ROOT', 'ROS_VERSION', 'ROS_PYTHON_VERSION')
-HOLD = ['setpriv', '--pdeathsig', 'KILL', 'unshare', '--net', '--mount', '--pid', '--uts', '--fork',
-        '--kill-child', '--mount-proc', 'sleep', 'infinity']
 
 
 def why_not():
@@ -91,46 +89,76 @@ class Lan:
         return self.robots[-1]
 
 
-class Robot:
-    """A robot's computer: stand-in packages in ``~/catkin_ws`` of the user ``turtle``, and sshd."""
+class Computer:
+    """A network namespace with a cable to the host, which can be cut."""
 
-    def __init__(self, lan, name, number):
-        self.name = name
+    HOLD = ('unshare', '--net', 'sleep', 'infinity')
+    SPACES = ('--net',)
+
+    def __init__(self, number):
         self.ip = ROBOT_IP.format(number)
         self.cable = 'cable{}'.format(number)
-        self.folder = lan.folder / name
-        self.home = self.folder / 'home'
-        self.home.mkdir(parents=True)
-        self._holder = subprocess.Popen(HOLD, stdin=subprocess.DEVNULL)
-        self.pid = wait_for(self._first_process, 20, 'the machine', poll_s=0.02)
+        self._holder = subprocess.Popen(('setpriv', '--pdeathsig', 'KILL') + self.HOLD,
+                                        stdin=subprocess.DEVNULL)
+        self.pid = wait_for(self._first_process, 20, 'the computer', poll_s=0.02)
         run('ip', 'link', 'add', self.cable, 'type', 'veth', 'peer', 'name', 'eth0', 'netns',
             str(self.pid))
         run('ip', 'link', 'set', self.cable, 'master', 'lan', 'up')
+        for words in ('link set lo up', 'addr add {}/24 dev eth0'.format(self.ip),
+                      'link set eth0 up'):
+            self.run('ip', *words.split())
+
+    def _first_process(self):
+        """Return the id of the computer's first process once it is what it shall be."""
+        there = os.readlink('/proc/{}/ns/net'.format(self._holder.pid))
+        return self._holder.pid if there != os.readlink('/proc/self/ns/net') else None
+
+    def command(self, *words):
+        """Return a command line that runs another on this computer."""
+        return ['nsenter', '--target', str(self.pid), *self.SPACES, '--', *words]
+
+    def run(self, *words):
+        """Run a command on this computer that has to go well; return what it said."""
+        return run(*self.command(*words))
+
+    def unplug(self):
+        """Cut the link."""
+        run('ip', 'link', 'set', self.cable, 'down')
+
+    def plug(self):
+        """Mend the link."""
+        run('ip', 'link', 'set', self.cable, 'up')
+
+    def close(self):
+        """End the computer and everything on it."""
+        self._holder.kill()
+        self._holder.wait(20)
+
+
+class Robot(Computer):
+    """A robot's computer: stand-in packages in ``~/catkin_ws`` of the user ``turtle``, and sshd."""
+
+    SPACES = ('--net', '--mount', '--pid', '--uts')
+    HOLD = ('unshare', *SPACES, '--fork', '--kill-child', '--mount-proc', 'sleep', 'infinity')
+
+    def __init__(self, lan, name, number):
+        super().__init__(number)
+        self.name = name
+        self.folder = lan.folder / name
+        self.home = self.folder / 'home'
+        self.home.mkdir(parents=True)
         self.run('hostname', name)
-        self.run('ip', 'link', 'set', 'lo', 'up')
-        self.run('ip', 'addr', 'add', self.ip + '/24', 'dev', 'eth0')
         # A second address, on a network that has nothing to do with the host.
-        self.run('ip', 'link', 'add', 'wifi', 'type', 'bridge')
-        self.run('ip', 'addr', 'add', '172.30.{}.5/16'.format(number), 'dev', 'wifi')
-        self.run('ip', 'link', 'set', 'wifi', 'up')
-        self.run('ip', 'link', 'set', 'eth0', 'up')
+        for words in ('link add wifi type bridge', 'link set wifi up',
+                      'addr add 172.30.{}.5/16 dev wifi'.format(number)):
+            self.run('ip', *words.split())
         self._settle_in()
 
     def _first_process(self):
-        """Return the id of the machine's first process once it is what it shall be."""
         for child in psutil.Process(self._holder.pid).children():
             if child.name() == 'sleep':
                 return child.pid
         return None
-
-    def command(self, *words):
-        """Return a command line that runs another on this machine."""
-        return ['nsenter', '--target', str(self.pid), '--net', '--mount', '--pid', '--uts',
-                '--'] + list(words)
-
-    def run(self, *words):
-        """Run a command on this machine that has to go well; return what it said."""
-        return run(*self.command(*words))
 
     def _settle_in(self):
         """Give the machine a user with a password, a place for logs, and a robot's packages."""
@@ -186,16 +214,3 @@ class Robot:
         """Return the command lines of this machine's processes that have a text in them."""
         lines = self.run('ps', '-eo', 'args').splitlines()
         return [line for line in lines if text in line]
-
-    def unplug(self):
-        """Cut the link."""
-        run('ip', 'link', 'set', self.cable, 'down')
-
-    def plug(self):
-        """Mend the link."""
-        run('ip', 'link', 'set', self.cable, 'up')
-
-    def close(self):
-        """End the machine and everything on it."""
-        self._holder.kill()
-        self._holder.wait(20)

@@ -10,13 +10,15 @@ import sys
 
 from geometry_msgs.msg import Twist
 import genpy
-from mhri.msg import ControlMode, DrillState, GatesState, RobotGate, RobotSelect
+from mhri.msg import (
+    AccessoryState, ControlMode, DrillState, DriveSettings, DriveState, RobotDrive, RobotSelect)
 from mhri.recording.folder import (
     bag_name, event_line, EVENTS_JSONL, info_text, SESSION_YAML, SessionEvent, SessionInfo)
+from mhri.session.topics import DRIVE
 from nav_msgs.msg import Odometry
 import rosbag
-from sensor_msgs.msg import CompressedImage, Imu, LaserScan
-from std_msgs.msg import Bool
+from sensor_msgs.msg import CompressedImage
+from std_msgs.msg import Bool, Float32
 
 STARTED = 1700000000.0
 ROBOTS = ('bot1', 'bot2')
@@ -27,15 +29,30 @@ SELECTED = ((0.0, ()), (5.0, ('bot1',)), (12.0, ('bot1', 'bot2')), (50.0, ('bot2
 STOPPED = ((0.0, False), (30.0, True), (36.0, False))
 # bot2 says nothing then.
 LOST_S = (40.0, 48.0)
-ASKED_MPS = 0.1
+ASKED_MPS, LIMITS = 0.1, (0.5, 1.5)
 # A drill is waited for, under way and over from these on; its target is found as it ends.
 DRILL_S = (6.0, 10.0, 24.0)
+# bot1 drives by itself then.
+TASK_S = (51.0, 58.0)
+# The lamp of bot1 is on, and its gas sensor measures 60 ppm, from then on.
+LAMP_S = 20.0
+ACCESSORIES = {'lamp': {'kind': 'toggle', 'topic': 'lamp', 'on_stop': 'keep'},
+               'gas': {'kind': 'readout', 'topic': 'gas', 'type': 'std_msgs/Float32'}}
+# The screen showed its depth camera then.
+DEPTH_S, DEPTH = (20.0, 30.0), '/bot1/camera/depth/image_raw/compressedDepth'
 MARKS = ((15.0, 'm1', 'a red bag below the stairs'), (45.0, 'm2', 'smoke'))
 
 
 def at(rows, time_s):
     """Return what holds at a time."""
     return [value for since_s, value in rows if since_s <= time_s][-1]
+
+
+def obeyed(robot, time_s):
+    """Return whom a robot obeyed."""
+    if robot in at(SELECTED, time_s):
+        return 'operator'
+    return 'task' if robot == 'bot1' and TASK_S[0] <= time_s < TASK_S[1] else ''
 
 
 def pose(robot, time_s):
@@ -58,17 +75,23 @@ def odometry(robot, time_s):
     return message
 
 
-def gates_state(time_s, robots=ROBOTS):
-    """Return what the gates said."""
+def drive_state(time_s, robots=ROBOTS):
+    """Return what the mux said."""
     stopped, selected = at(STOPPED, time_s), at(SELECTED, time_s)
-    state = GatesState(operator='/mhri_panel', computer='here', stop_all=stopped)
+    state = DriveState(operator='/mhri_panel', computer='here', stop_all=stopped,
+                       mode=at(MODES, time_s), share=1.0, settings=DriveSettings(
+                           linear_mps=LIMITS[0], angular_rad_s=LIMITS[1]))
+    state.command.linear.x = 0.0 if stopped else ASKED_MPS
     for robot in robots:
-        gate = RobotGate(name=robot, topic='/{}/cmd_vel'.format(robot), round_trip_s=math.nan,
-                         odometry_follows=True,
-                         obeys='operator' if robot in selected else '',
-                         stands='stopped' if stopped and robot in selected else '')
-        gate.sent.linear.x = 0.1 if robot in selected and not stopped else 0.0
-        state.robots.append(gate)
+        drive = RobotDrive(name=robot, topic='/{}/cmd_vel'.format(robot), round_trip_s=math.nan,
+                           odometry_follows=True, selected=robot in selected,
+                           obeys=obeyed(robot, time_s),
+                           stands='stopped' if stopped and robot in selected else '')
+        drive.sent.linear.x = 0.1 if robot in selected and not stopped else 0.0
+        if robot == 'bot1':
+            drive.accessories = [AccessoryState(
+                'lamp', True, 'on' if time_s >= LAMP_S else 'off', [], '')]
+        state.robots.append(drive)
     return state
 
 
@@ -105,12 +128,17 @@ def rows_between(begin_s, end_s):
         latched(float(second), '/mhri_drill/state', drill_state(float(second)))
     for step in range(round(10 * begin_s), round(10 * end_s)):
         time_s = 0.1 * step
+        if DEPTH_S[0] <= time_s < DEPTH_S[1] and step % 5 == 0:
+            found.append((time_s, DEPTH, CompressedImage(format='compressedDepth'), False))
+        lit = time_s >= LAMP_S
+        found.append((time_s, '/bot1/gas', Float32(60.0 if lit else 12.0), False))
+        found.append((time_s, '/bot1/lamp', Bool(lit), False))
         asked = Twist()
         asked.linear.x = 0.0 if at(STOPPED, time_s) else ASKED_MPS
         found.append((time_s, '/robot_controller/twist', asked, False))
-        if step % 5 == 0 or any(abs(time_s - since) < 0.01 for rows in (SELECTED, STOPPED)
+        if step % 5 == 0 or any(abs(time_s - since) < 0.01 for rows in (MODES, SELECTED, STOPPED)
                                 for since, _ in rows):
-            latched(time_s + 0.001, '/gates/state', gates_state(time_s + 0.001))
+            latched(time_s + 0.001, DRIVE, drive_state(time_s + 0.001))
         for robot in ROBOTS:
             if robot == 'bot2' and LOST_S[0] <= time_s < LOST_S[1]:
                 continue
@@ -139,11 +167,12 @@ def events():
     def line(time_s, kind, text, severity='info', robot='', **data):
         return SessionEvent(STARTED + time_s, STARTED + time_s, kind, text, severity, robot, data)
     found = [line(0.0, 'start', 'the session begins', mode='joy', stop_all=False, selected=[])]
-    found += [line(since, 'mode', 'driving with ' + mode) for since, mode in MODES[1:]]
-    found += [line(since, 'selection', 'selected: ' + (', '.join(names) or 'none'))
+    found += [line(since, 'mode', 'driving with ' + mode, mode=mode) for since, mode in MODES[1:]]
+    found += [line(since, 'selection', 'selected: ' + ', '.join(names), selected=list(names))
               for since, names in SELECTED[1:]]
     found += [line(since, 'stop', 'STOP ALL' if stopped else 'STOP ALL released',
-                   'warning' if stopped else 'info') for since, stopped in STOPPED[1:]]
+                   'warning' if stopped else 'info', stop_all=stopped)
+              for since, stopped in STOPPED[1:]]
     found.append(line(LOST_S[0] + 1.0, 'lost', 'lost while driven', 'error', 'bot2'))
     found.append(line(LOST_S[1], 'link', 'back after 8 s', 'info', 'bot2'))
     for since, mark, text in MARKS:
@@ -165,27 +194,20 @@ def write_session(folder):
                       'parameters': {'robot_type': 'turtlebot3', 'robot_model': 'burger'},
                       'topics': {'odometry': '/{}/odom'.format(robot)}}
               for number, robot in enumerate(ROBOTS, 1)}
+    robots['bot1']['parameters']['mhri'] = {'accessories': ACCESSORIES}
     (folder / SESSION_YAML).write_text(info_text(SessionInfo(STARTED, robots=robots)),
                                        encoding='utf-8')
     return folder
 
 
-def hour_rows(begin_s, end_s, robots, rates_hz, picture):
-    """Yield messages of robots with all their sensors, for benchmarks."""
-    scan = LaserScan(ranges=[1.0] * 360, angle_increment=0.0174, range_max=10.0)
-    made = {'odom': lambda time_s: odometry('bot1', time_s), 'imu': lambda _: Imu(),
-            'scan': lambda _: scan,
-            'camera/rgb/image_raw/compressed': lambda _: CompressedImage(format='jpeg',
-                                                                         data=picture)}
-    found = [(begin_s, '/mux/mode', ControlMode('joy'), True)]
-    for name, rate_hz in rates_hz.items():
-        for step in range(round((end_s - begin_s) * rate_hz)):
-            time_s = begin_s + step / rate_hz
-            found += [(time_s, '/{}/{}'.format(robot, name), made[name](time_s), False)
-                      for robot in robots]
-    found += [(begin_s + 0.5 * step, '/gates/state', gates_state(begin_s + 0.5 * step, robots),
-               True) for step in range(round(2 * (end_s - begin_s)))]
-    return sorted(found, key=lambda row: row[0])
+def write_pictures(folder, jpeg, camera='/bot2/camera/image_raw/compressed', from_s=4, every_s=2):
+    """Write pictures of a camera into a session's folder, as one more bag.
+
+    :param jpeg: function from a time [s] to the bytes of its picture
+    """
+    write_bag(Path(folder) / bag_name(round(LENGTH_S / BAG_S)), [
+        (float(time_s), camera, CompressedImage(format='jpeg', data=jpeg(time_s)), False)
+        for time_s in range(from_s, round(LENGTH_S), every_s)])
 
 
 if __name__ == '__main__':

@@ -7,7 +7,7 @@ from python_qt_binding.QtTest import QTest
 from python_qt_binding.QtWidgets import QApplication
 
 from mhri.base.gui import theme
-from mhri.base.mocap import Pose
+from mhri.base.geometry import Pose
 from mhri.map.gui.map_pane import MapPane
 from mhri.map.scene import MapRobot, Scene
 
@@ -51,3 +51,17 @@ def drag(pane, start, end):
 def click(pane, x_m, y_m):
     """Click at a place."""
     QTest.mouseClick(pane.view, Qt.LeftButton, Qt.NoModifier, pixel(pane, x_m, y_m))
+
+
+def open_menu(operator):
+    """Wait until a menu is open; return {words: action} of it."""
+    operator.wait_until(lambda: QApplication.activePopupWidget() is not None)
+    return {action.text(): action for action in QApplication.activePopupWidget().actions()
+            if not action.isSeparator()}
+
+
+def choose(operator, action):
+    """Click a row of the open menu."""
+    menu = QApplication.activePopupWidget()
+    QTest.mouseClick(menu, Qt.LeftButton, Qt.NoModifier, menu.actionGeometry(action).center())
+    operator.wait_until(lambda: QApplication.activePopupWidget() is None)

@@ -5,10 +5,7 @@
 Computers are network namespaces. Every program is a process that can be killed and started again,
 alone. What a robot is told, and which commands its guard obeys, it writes down itself.
 """
-import contextlib
 import os
-import signal
-import subprocess
 import sys
 import time
 import uuid
@@ -16,13 +13,16 @@ import xmlrpc.client
 
 import psutil
 
+from support import graph
 from support import machines
 from support.authority import Authority
 from support.fake_mux import FakeOperator, StateEar
-from support.random_world import Computer, GUARD, HERE, RESTARTER
-from support.ros_system import free_port, System, wait_for
-from support.task_system import RobotLog
+from support.random_world import GUARD, HERE
+from support.robots import RobotLog
+from support.ros_system import free_port, node_words, System, wait_for
 
+# As respawn="true" in a launch file.
+RESTARTER = 'trap exit INT TERM; until "$@"; do sleep 0.1; done'
 # Slow computers start slowly.
 LONG_S = 90.0
 # Name on the host: (robot_type, model, velocity topics, namespace on its own master, lane y [m]).
@@ -33,35 +33,18 @@ ROBOTS = {'bot1': ('turtlebot2', '', ('teleop/input', 'cmd_vel_mux/input/teleop'
 LANE_M = 5.0
 # This one and the host call a router.
 ROUTED = 'bot3'
-OF_HOST = ('master', 'mux', 'gates', 'tasks', 'router') + tuple('link_' + name for name in ROBOTS)
+OF_HOST = ('master', 'mux', 'tasks', 'router') + tuple('link_' + name for name in ROBOTS)
 OF_ROBOT = ('master', 'base', 'guard', 'link')
 # What a robot needs no restart of: it is the robot.
 KEPT = ('base',)
-NODE = 'from mhri.nodes.{} import main; main()'
 
 
 class ToldRobot(RobotLog):
-    """What a robot was told, what it did, and which commands its guard obeyed first when."""
-
-    def __init__(self, path):
-        super().__init__(path)
-        self._read = {}
-
-    def rows(self, what):
-        """Return all rows of ``told`` or ``moved``; in an hour those are too many to read anew."""
-        at, rows = self._read.setdefault(what, [0, []])
-        with contextlib.suppress(FileNotFoundError), open('{}.{}'.format(self.path, what)) as log:
-            log.seek(at)
-            for line in iter(log.readline, ''):
-                if not line.endswith('\n'):
-                    break
-                rows.append(tuple(map(float, line.split())))
-                self._read[what][0] += len(line)
-        return rows[:]
+    """And which commands its guard obeyed first when."""
 
     def told_since(self, since):
         """Return the rows in which it was told to move."""
-        return [row for row in self.rows('told') if row[0] >= since and any(row[1:])]
+        return [row for row in self.after(since) if any(row[1:])]
 
     def obeyed(self):
         """Return {frame_id of a command without its token: when the guard first said so [s]}."""
@@ -88,16 +71,15 @@ class Masters:
         self._router = ['--router', '{}/{}:{}'.format(self._protocol, machines.HOST_IP,
                                                       free_port())]
         self._keys = self._make_keys() if keys else {}
-        self.host = System(adopt=False)
-        self.computers = {name: Computer(11 + number) for number, name in enumerate(ROBOTS)}
+        self.host = System(ip=machines.HOST_IP)
+        self.computers = {name: machines.Computer(11 + number)
+                          for number, name in enumerate(ROBOTS)}
         self.logs = {name: ToldRobot(str(self.folder / name)) for name in ROBOTS}
         self.processes = {}
         self.state = None
         self.sent = {}
-        self._envs = {place: dict(self.host.env, ROS_IP=ip, ROS_MASTER_URI='http://{}:{}'.format(
-            ip, self.host.port)) for place, ip in self.ips()}
-        os.environ.update({key: self._envs['host'][key] for key in (
-            'ROS_MASTER_URI', 'ROS_IP', 'ROS_HOME', 'ROS_LOG_DIR')})
+        self._envs = {place: {'ROS_IP': ip, 'ROS_MASTER_URI': 'http://{}:{}'.format(
+            ip, self.host.port)} for place, ip in self.ips()}
 
     def _make_keys(self):
         """Return {place: the folder with its key}."""
@@ -155,9 +137,8 @@ class Masters:
         """Return (command line, what its environment has beside) of a program."""
         if part == 'master':
             return ['rosmaster', '--core', '-p', str(self.host.port)], {}
-        link = [sys.executable, '-c', NODE.format('mhri_link')]
-        link += ['--keys', str(self._keys['router' if part == 'router' else place])
-                 if self._keys else 'off']
+        link = node_words('mhri_link', '--keys', str(
+            self._keys['router' if part == 'router' else place]) if self._keys else 'off')
         if part.startswith('link_'):
             name = part[5:]
             where = ['--connect', '{}/{}:{}'.format(self._protocol, self.computers[name].ip,
@@ -167,7 +148,7 @@ class Masters:
         if part == 'router':
             return link + ['--side', 'router', '--listen', self._router[1]], {}
         if place == 'host':
-            return [sys.executable, '-c', NODE.format(part)], {}
+            return node_words(part), {}
         _, _, topics, space, y_m = ROBOTS[place]
         words = {
             'base': [sys.executable, str(HERE / 'logged_sim.py'), self.logs[place].path, *topics,
@@ -187,10 +168,9 @@ class Masters:
             words = ['bash', '-c', RESTARTER, 'restarter'] + words
         if place != 'host':
             words = self.computers[place].command(*words)
-        with (self.folder / '{}_{}.log'.format(place, part)).open('ab') as log:
-            self.processes[place, part] = subprocess.Popen(
-                words, env=dict(self._envs[place], **more), stdin=subprocess.DEVNULL, stdout=log,
-                stderr=subprocess.STDOUT, start_new_session=True)
+        self.processes[place, part] = self.host.start(
+            *words, log=str(self.folder / '{}_{}.log'.format(place, part)),
+            env={**self._envs[place], **more})
         if part == 'master':
             wait_for(lambda: self._answers(place), LONG_S, 'the master of ' + place, 0.05)
             # As roscore does.
@@ -204,16 +184,10 @@ class Masters:
 
     def kill(self, place, part):
         """End a program with SIGKILL."""
-        with contextlib.suppress(ProcessLookupError):
-            os.killpg(self.processes[place, part].pid, signal.SIGKILL)
-        self.processes[place, part].wait(20)
-        if part == 'gates' and self.state is not None:
-            # What they said last counts no more.
+        self.host.kill(self.processes[place, part])
+        if part == 'mux' and self.state is not None:
+            # What it said last counts no more.
             self.state.at = None
-
-    def cut(self, name, down):
-        """Pull the cable of a robot, or plug it in."""
-        machines.run('ip', 'link', 'set', self.computers[name].cable, 'down' if down else 'up')
 
     def sizes(self):
         """Return {program: (its process, MB, threads, files and sockets, sockets, lines said)}."""
@@ -233,7 +207,7 @@ class Masters:
     # The operator.
 
     def join(self):
-        """Make this process the operator of all robots, and an ear beside the gates."""
+        """Make this process the operator of all robots, and an ear beside the mux."""
         import rospy
         from geometry_msgs.msg import TwistStamped
         from mhri.graph.ros.master_watch import MasterWatch
@@ -247,7 +221,7 @@ class Masters:
         self.operator = FakeOperator()
         self.stick = Stick()
         self.witnesses = {name: Witness(name) for name in ROBOTS}
-        self._mode = rospy.Publisher('/mux_in/mode_select', ControlMode, queue_size=1, latch=True)
+        self._mode = rospy.Publisher(graph.MODE_SELECT, ControlMode, queue_size=1, latch=True)
         self._mode.publish('pedal')
         self._ears = [rospy.Subscriber('/{}/mhri_guard/command'.format(name), TwistStamped,
                                        self._note, name, queue_size=100) for name in ROBOTS]
@@ -265,8 +239,8 @@ class Masters:
         assert rospy.ServiceProxy(service, SetBool)(True).success
 
     def keeps(self, name):
-        """Tell whether a robot records."""
-        folder = os.path.join(self._envs[name]['ROS_HOME'], 'mhri', 'link', name, 'kept', 'open')
+        """Return whether a robot records."""
+        folder = os.path.join(self.host.home, 'mhri', 'link', name, 'kept', 'open')
         return os.path.isdir(folder) and any(
             os.path.getsize(os.path.join(folder, file)) > 5000 for file in os.listdir(folder))
 
@@ -276,34 +250,21 @@ class Masters:
         moves = bool(message.twist.linear.x or message.twist.angular.z)
         self.sent[name, message.header.frame_id.rpartition(':')[0]] = (made_s, moves)
 
-    def gate(self, name):
-        """Return what the gates say of a robot now, None if it is old."""
+    def row(self, name):
+        """Return what the mux says of a robot now, None if it is old."""
         fresh = self.state.at is not None and time.monotonic() - self.state.at < 1.5
         return self.state.robot(name) if fresh else None
 
     def turns(self, name):
-        """Tell whether a robot is told to turn, and does."""
+        """Return whether a robot is told to turn, and does."""
         told, moved = (self.logs[name].rows(what)[-1:] for what in ('told', 'moved'))
         return bool(told and moved) and any(told[0][1:]) and abs(moved[0][2]) > 0.05
 
     def drive(self, names=tuple(ROBOTS)):
-        """Turn robots on the spot together; the gates ask for neutral first."""
-        attempts = []
-
-        def through():
-            self.stick.hold(0.0, 0.0)
-            time.sleep(0.15)
-            self.stick.hold(0.0, 0.4)
-            # On a busy computer each attempt is given more time than the last one.
-            attempts.append(time.monotonic())
-            deadline = attempts[-1] + min(10.0, 1.0 * len(attempts))
-            while time.monotonic() < deadline:
-                if all(map(self.turns, names)):
-                    return True
-                time.sleep(0.02)
-            return False
-        wait_for(through, LONG_S, lambda: 'all of {} to turn; {}'.format(
-            names, [self.gate(name) for name in names]))
+        """Turn robots on the spot together; the mux asks for neutral first."""
+        self.stick.drive(0.0, 0.4, lambda: all(map(self.turns, names)), LONG_S,
+                         lambda: 'all of {} to turn; {}'.format(
+                             names, [self.row(name) for name in names]))
 
     def stands_from(self, name, since):
         """Wait until a robot was told to stand, or its body does; return when."""
@@ -325,11 +286,11 @@ class Masters:
             self.stands_from(name, since)
 
     def waits(self, name, since):
-        """See that a robot stays where it is until the stick is let go: mux or gates ask for that.
+        """See that a robot stays where it is until the stick is let go: the mux asks for that.
 
         :param since: from when on it was told nothing but to stand
         """
-        wait_for(lambda: self.gate(name) and self.gate(name).guarded, LONG_S,
+        wait_for(lambda: self.row(name) and self.row(name).guarded, LONG_S,
                  lambda: '{} to be reached: {}'.format(name, self.state.robot(name)), 0.01)
         # What is shown is that nothing happens in this time.
         time.sleep(0.7)

@@ -10,7 +10,7 @@ import sys
 
 from support.ros_system import System
 
-PATIENCE_S = 60.0
+TIMEOUT_S = 60.0
 
 
 def blocks(text):
@@ -93,7 +93,7 @@ class Newcomer:
 
     def xdotool(self, *words):
         """Use mouse, keyboard or eyes; return what there is to see, '' where it is nothing."""
-        return subprocess.run(('xdotool',) + words, env=self.system.env, timeout=PATIENCE_S,
+        return subprocess.run(('xdotool',) + words, env=self.system.env, timeout=TIMEOUT_S,
                               stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
                               universal_newlines=True).stdout.strip()
 

@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A robot's own multiplexer, as twist_mux is one, with its lock on: ``own_mux.py OUTPUT INPUT...``.
 
-It reads the inputs and passes nothing on; with ``--passes``, all: as a velocity smoother does.
+It reads the inputs and passes nothing on.
 """
 from geometry_msgs.msg import Twist
 import rospy
@@ -11,12 +11,10 @@ import rospy
 
 def main():
     output, *inputs = rospy.myargv()[1:]
-    passes = '--passes' in inputs
     rospy.init_node('twist_mux')
     publisher = rospy.Publisher(output, Twist, queue_size=1)
-    subscribers = [rospy.Subscriber(
-        topic, Twist, publisher.publish if passes else lambda message: None, queue_size=1)
-        for topic in inputs if topic != '--passes']
+    subscribers = [rospy.Subscriber(topic, Twist, lambda message: None, queue_size=1)
+                   for topic in inputs]
     rospy.spin()
     del publisher, subscribers
 

@@ -26,7 +26,7 @@ class PanelSession:
 
     def __init__(self, launches, robots):
         self.system = System()
-        self.host = None
+        self.presenter = None
         try:
             self._start(launches, robots)
         except BaseException:
@@ -35,23 +35,22 @@ class PanelSession:
 
     def _start(self, launches, robots):
         from mhri.screen.presenters.demo import Hands
-        from mhri.screen.presenters.screen_host import ScreenHost
+        from mhri.screen.presenters.screen_presenter import ScreenPresenter
         from mhri.screen.ros.backend import ScreenBackend
         # Before there is an application: it takes the screen that is named then.
         self.system.screen(host=self.display_host)
         self.system.start_master()
         self.system.node('mux', '__name:=mux')
-        self.system.node('gates')
         for words in launches:
             self.system.launch(*words)
         self.bring()
         self.app = QApplication.instance() or QApplication(['panel'])
-        self.host = ScreenHost(ScreenBackend(['panel']))
-        self.operator = self.host.operator
-        self.host.screen.resize(1500, 1050)
-        self.host.screen.show()
-        self.hands = Hands(self.host.screen)
-        self.host.start(robots)
+        self.presenter = ScreenPresenter(ScreenBackend(['panel']))
+        self.operator = self.presenter.operator
+        self.presenter.screen.resize(1500, 1050)
+        self.presenter.screen.show()
+        self.hands = Hands(self.presenter.screen)
+        self.presenter.start(robots)
         self.until(lambda: all(self._is_known(name) for name in robots), START_S, 'live robots')
         self.until(lambda: self.operator.view().mode, START_S, 'the mux')
 
@@ -59,9 +58,9 @@ class PanelSession:
         """Start what else there shall be, once there is a master."""
 
     def _is_known(self, name):
-        """Tell whether a robot is live, as what it is: it may be seen before its type is known."""
+        """Return whether a robot is live, as what it is: its type may be known later."""
         view = self.operator.robot_view(name)
-        return view.link == 'live' and view.type_label.startswith('TurtleBot')
+        return view.link == 'live' and view.type_label not in ('', 'generic')
 
     def until(self, condition, timeout_s=START_S, what='the condition'):
         """Let Qt work until a condition comes true; return what is true."""
@@ -72,12 +71,12 @@ class PanelSession:
 
     def open(self, name):
         """Look at a robot alone, open its switches, and return its tile."""
-        self.until(lambda: name in self.host.windows, what='the tile of ' + name)
+        self.until(lambda: name in self.presenter.windows, what='the tile of ' + name)
         if name not in self.operator.selection.selected:
             self.hands.click('check_' + name)
-        self.host.screen.stage.set_style('one')
-        self.host.screen.look_at(name)
-        tile = self.host.windows[name]
+        self.presenter.screen.stage.set_style('one')
+        self.presenter.screen.look_at(name)
+        tile = self.presenter.windows[name]
         self.until(lambda: tile.isVisible() and tile.header.large, what='the tile to be large')
         tile.views_button.setChecked(True)
         self.until(lambda: self.operator.feeds(name) is not None, what='the feeds of ' + name)
@@ -90,8 +89,9 @@ class PanelSession:
         assert self.hands.widget(name, window).isChecked() == on
 
     def picture(self, window, kind):
-        """Show a camera's picture by its switch and wait until it is there and live."""
+        """Show a camera's picture by its switch, close the switches over it, await a live one."""
         self.switch(window, 'camera_' + kind)
+        window.views_button.setChecked(False)
         camera = window.view('rgb')
         self.until(lambda: camera.picture.frame is not None and camera.picture.frame.kind == kind
                    and not camera.picture.warning, what='the {} picture'.format(kind))
@@ -117,10 +117,10 @@ class PanelSession:
     def close(self, *failure):
         """End everything that was started."""
         import rospy
-        if self.host is not None:
-            self.host.close()
+        if self.presenter is not None:
+            self.presenter.close()
             # Before the application, which goes with this object.
-            self.host.screen.deleteLater()
+            self.presenter.screen.deleteLater()
             self.app.sendPostedEvents(None, QEvent.DeferredDelete)
         rospy.signal_shutdown('done')
         self.system.__exit__(*(failure or (None, None, None)))

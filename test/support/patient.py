@@ -13,7 +13,7 @@ import roslib.message
 import rospy
 from sensor_msgs.msg import LaserScan
 
-from mhri.msg import GatesState, RobotSelect
+from mhri.msg import ControlMode, DriveState, RobotSelect
 
 TICK_S = 0.05
 
@@ -45,18 +45,17 @@ class Mover:
         return self._turn
 
 
-class Gates:
-    """Hears the velocity command and says a state at 2 Hz, as the gates do."""
+class Mux:
+    """Says a state at 2 Hz, as the mux does."""
 
-    def __init__(self, refused):
-        self._refused = refused
-        self._publisher = rospy.Publisher('/gates/state', GatesState, queue_size=1, latch=True)
-        rospy.Subscriber('/robot_controller/twist', Twist, lambda message: None)
+    def __init__(self):
+        self._mode = rospy.Publisher('/mux/mode', ControlMode, queue_size=1, latch=True)
+        self._publisher = rospy.Publisher('/mux/state', DriveState, queue_size=1, latch=True)
         self._say()
         self._timer = rospy.Timer(rospy.Duration(0.5), self._say)
 
     def _say(self, _=None):
-        state = GatesState(refused=self._refused)
+        state = DriveState()
         state.header.stamp = rospy.Time.now()
         self._publisher.publish(state)
 
@@ -73,7 +72,7 @@ def parse(arguments):
     parser.add_argument('--changed', action='store_true', help='odometry of another definition')
     parser.add_argument('--obey', help='topic of the velocity that its odometry follows')
     parser.add_argument('--select', help='select this robot again and again, as a panel does')
-    parser.add_argument('--gates', nargs='*', help='speak as the gates do, which refused this')
+    parser.add_argument('--mux', action='store_true', help='say what the mux says')
     parser.add_argument('--watchdog', type=float, default=0.0)
     return parser.parse_args(arguments)
 
@@ -95,8 +94,8 @@ def main():
     for topic, kind in options.subscribe:
         rospy.Subscriber(topic, roslib.message.get_message_class(kind), lambda message: None)
     mover = Mover(options.obey, options.watchdog) if options.obey else None
-    if options.gates is not None:
-        Gates(options.gates)
+    if options.mux:
+        Mux()
     if options.select:
         panel = rospy.Publisher('/robot_controller/robot_select', RobotSelect, queue_size=1,
                                 latch=True)

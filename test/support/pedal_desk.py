@@ -42,8 +42,8 @@ class Desk:
     def reader(self, device='', profile='', role=DRIVE, profiles=PROFILES):
         """Return a reader, not opened yet."""
         reader = PedalReader(lambda: profiles, role, {KEYS: PedalKeys(role)})
-        reader.want_device(device)
-        reader.want_profile(profile)
+        reader.choose_device(device)
+        reader.choose_profile(profile)
         self.readers.append(reader)
         return reader
 

@@ -8,9 +8,6 @@ times a second (``nav_msgs/Odometry``, or ``turtlesim/Pose`` with ``--turtle``).
 and stops 0.5 s after the last command. ``--sign TOPIC TYPE`` is one more topic that it publishes.
 ``--halfway`` stops while it comes up: it subscribes its commands when it
 gets SIGUSR1. ``--frozen``: its odometry says that it stands, whatever it does.
-``--wall TOPIC X MIN MAX NOTHING AHEAD`` has it scan a wall at x = X [m], which it can drive
-through: its laser sits AHEAD of its middle [m], measures nothing nearer than MIN (NaN), and says
-NOTHING beyond MAX.
 """
 import argparse
 import math
@@ -26,12 +23,10 @@ from genpy.dynamic import generate_dynamic  # noqa: E402
 from geometry_msgs.msg import Twist  # noqa: E402
 from nav_msgs.msg import Odometry  # noqa: E402
 import rospy  # noqa: E402
-from sensor_msgs.msg import LaserScan  # noqa: E402
 from turtlesim.msg import Pose  # noqa: E402
 
 PERIOD_S = 0.05
 WATCHDOG_S = 0.5
-BEAMS = 360
 
 
 class PlainRobot:
@@ -47,10 +42,6 @@ class PlainRobot:
         self._signs = [rospy.Publisher(topic, generate_dynamic(kind, 'uint8 state\n')[kind],
                                        queue_size=1) for topic, kind in options.sign]
         self._topic = options.command
-        self._wall = None
-        if options.wall:
-            self._wall = [float(word) for word in options.wall[1:]]
-            self._scans = rospy.Publisher(options.wall[0], LaserScan, queue_size=1)
         if not options.halfway:
             self.listen()
 
@@ -79,19 +70,6 @@ class PlainRobot:
             if self._lies:
                 linear = angular = self._x = self._y = self._yaw = 0.0
             self._publisher.publish(self._pose(linear, angular))
-            if self._wall:
-                self._scans.publish(self._scan(*self._wall))
-
-    def _scan(self, wall_m, least_m, most_m, nothing, ahead_m):
-        step = 2.0 * math.pi / BEAMS
-        message = LaserScan(angle_max=step * (BEAMS - 1), angle_increment=step, range_min=least_m,
-                            range_max=most_m)
-        gap_m = wall_m - self._x - ahead_m * math.cos(self._yaw)
-        for beam in range(BEAMS):
-            towards = math.cos(self._yaw + beam * step)
-            far = gap_m / towards if gap_m * towards > 0.0 else math.inf
-            message.ranges.append(math.nan if far < least_m else nothing if far > most_m else far)
-        return message
 
     def _pose(self, linear, angular):
         if self._turtle:
@@ -112,7 +90,6 @@ def main():
     parser.add_argument('--sign', nargs=2, action='append', default=[])
     parser.add_argument('--halfway', action='store_true')
     parser.add_argument('--frozen', action='store_true')
-    parser.add_argument('--wall', nargs=6)
     options = parser.parse_args(rospy.myargv()[1:])
     go_on = threading.Event()
     signal.signal(signal.SIGUSR1, lambda *_: go_on.set())

@@ -9,10 +9,10 @@ import collections
 import math
 import random
 
-from mhri.link.bearing import AROUND_BYTES, Bearing, Meter
 from mhri.link.carried import COMMAND, GUARD_ECHO, Pace, PICTURE, STATE, Stream
 from mhri.link.frames import Frame
-from mhri.link.pieces import Gathered, split
+from mhri.link.pieces import PieceAssembler, split
+from mhri.link.rate_estimator import AROUND_BYTES, RateEstimator, Meter
 from mhri.link.shares import Flow, Share, shares
 from support.radio import Channel, read_table, Table
 
@@ -23,7 +23,7 @@ ELSEWHEN_S = 77.0
 # Stream, how often it comes [Hz], and bytes of a message as it is and packed.
 ODOMETRY, CAMERA = 'odom', 'camera'
 STREAMS = ((Stream(GUARD_ECHO, COMMAND), 20.0, 115, 115),
-           (Stream(ODOMETRY, STATE, 50.0, least_hz=8.0), 50.0, 740, 185),
+           (Stream(ODOMETRY, STATE, 50.0, min_hz=8.0), 50.0, 740, 185),
            (Stream('imu', STATE, 100.0, weight=0.7), 100.0, 345, 166),
            (Stream('scan', STATE, 10.0, weight=0.2), 10.0, 5800, 1420),
            (Stream(CAMERA, PICTURE, 30.0), 30.0, 26000, 26000))
@@ -46,7 +46,7 @@ class Sender:
     """The robot's side."""
 
     def __init__(self, radio, dice):
-        self.bearing = Bearing()
+        self.estimator = RateEstimator()
         self._radio, self._dice = radio, dice
         self._flows = {row[0].topic: Flow(row[0]) for row in STREAMS}
         self._paces = {row[0].topic: Pace(row[0].rate_hz) for row in STREAMS}
@@ -80,7 +80,7 @@ class Sender:
         self._go_on(now)
 
     def _come(self, stream, size, packed, now):
-        flow, bound = self._flows[stream.topic], self.bearing.bound
+        flow, bound = self._flows[stream.topic], self.estimator.bound
         flow.came(now)
         if bound and stream.urgency == PICTURE:
             flow.sized(size + HEAD_BYTES)
@@ -106,16 +106,16 @@ class Sender:
             piece_due += len(piece) / (share or Share(1.0)).pace
         self._next = due, piece_due
 
-    def on_heard(self, heard, now):
-        """Take in what the host says that came, as ``link/ros/robot_side.py``."""
-        flows, bearing = list(self._flows.values()), self.bearing
-        was_bound = bearing.bound
-        bearing.on_heard(heard, sum(flow.demand(now) for flow in flows), now)
-        if bearing.bound and not was_bound:
+    def on_stats(self, stats, now):
+        """Handle the host's report, as ``link/ros/robot_side.py``."""
+        flows, estimator = list(self._flows.values()), self.estimator
+        was_bound = estimator.bound
+        estimator.on_stats(stats, sum(flow.demand(now) for flow in flows), now)
+        if estimator.bound and not was_bound:
             for flow in flows:
                 flow.packed()
-        self._shares = shares(flows, bearing.bytes_per_s, bearing.loss, now, bearing.quiet) \
-            if bearing.bound else {}
+        self._shares = shares(flows, estimator.bytes_per_s, estimator.loss, now, estimator.quiet) \
+            if estimator.bound else {}
         for stream, _, _, _ in STREAMS[:-1]:
             share, rate_hz = self._shares.get(stream.topic), stream.rate_hz
             if share is not None:
@@ -129,13 +129,13 @@ class Receiver:
     def __init__(self):
         self.meter = Meter()
         self.poses, self.pictures = [], []
-        self._gathered = Gathered()
+        self._assemblers = PieceAssembler()
         self._newest = collections.Counter()
         self._parts = collections.Counter()
         self._pose_s = -math.inf
 
     def hear(self, said, whole, now):
-        """Take in a packet; a message counts when all of it came."""
+        """Handle a packet; a message counts when all of it came."""
         topic, number, sent_s, size, body = said
         if not whole:
             self._parts[said[:2]] += PACKET_BYTES
@@ -148,7 +148,7 @@ class Receiver:
         if topic == ODOMETRY:
             self._pose_s = sent_s
         elif topic == CAMERA and body:
-            found = self._gathered.add(body)
+            found = self._assemblers.add(body)
             sent_s = found.stamp_s if found else None
         if topic == CAMERA and sent_s is not None:
             self.pictures.append((now, now - sent_s))
@@ -192,7 +192,7 @@ class RadioWorld:
                     call(now)
             for came in self._down.take(now):
                 if came.said is not None:
-                    came.said[0].on_heard(came.said[1], now)
+                    came.said[0].on_stats(came.said[1], now)
 
     def _answer(self, now):
         for sender, receiver in self.receivers.items():

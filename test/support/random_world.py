@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Mux, gates, four robots without watchdogs and their operators, on computers of their own.
+"""The mux, four robots without watchdogs and their operators, on computers of their own.
 
 Everything that happens to them is done here, and told: ``facts`` is what the reference model is to
 hear, (time [s, monotonic], event, arguments).
@@ -15,9 +15,11 @@ import time
 
 import psutil
 
+from support import graph
 from support import machines
+from support.journals import Journal
 from support.reference_model import JOY, PAD, ReferenceModel
-from support.ros_system import children, System, wait_for
+from support.ros_system import children, node_words, System, tell, wait_for
 
 HERE = Path(__file__).resolve().parent
 PROCESS = str(HERE / 'soak_process.py')
@@ -25,40 +27,17 @@ GUARD = str(HERE.parents[1] / 'utils' / 'remote' / 'mhri_guard')
 # Name and whether a guard runs on it.
 ROBOTS = {'bot1': False, 'bot2': True, 'bot3': False, 'bot4': True}
 OPERATORS = ('operator_a', 'operator_b')
-# As mhri.launch starts again who has crashed; mux and gates that are killed or hang are replaced by
-# the process that stands by.
-RESTARTER = '''trap exit INT TERM
-until "$@"; do sleep 0.1; done
-'''
 POLL_S = 0.02
+# A drive without its undertaker has ended after this time [s].
+ENDS_S = 3.0
 
 
-class Computer:
-    """A network namespace with a cable to the host, which can be cut."""
-
-    def __init__(self, number):
-        self.ip = machines.ROBOT_IP.format(number)
-        self.cable = 'cable{}'.format(number)
-        self._holder = subprocess.Popen(['setpriv', '--pdeathsig', 'KILL', 'unshare', '--net',
-                                         'sleep', 'infinity'], stdin=subprocess.DEVNULL)
-        own = os.readlink('/proc/self/ns/net')
-        place = '/proc/{}/ns/net'.format(self._holder.pid)
-        wait_for(lambda: os.readlink(place) != own, 10.0, 'the namespace')
-        machines.run('ip', 'link', 'add', self.cable, 'type', 'veth', 'peer', 'name', 'eth0',
-                     'netns', str(self._holder.pid))
-        machines.run('ip', 'link', 'set', self.cable, 'master', 'lan', 'up')
-        for words in ('link set lo up', 'addr add {}/24 dev eth0'.format(self.ip),
-                      'link set eth0 up'):
-            machines.run(*self.command('ip', *words.split()))
-
-    def command(self, *words):
-        """Return a command line that runs another on this computer."""
-        return ['nsenter', '--target', str(self._holder.pid), '--net', '--'] + list(words)
-
-    def close(self):
-        """Let the computer go."""
-        self._holder.kill()
-        self._holder.wait(10)
+def _lives(process):
+    """Return whether a ``psutil.Process`` has not ended."""
+    try:
+        return process.is_running() and process.status() != psutil.STATUS_ZOMBIE
+    except psutil.NoSuchProcess:
+        return False
 
 
 class World:
@@ -70,30 +49,30 @@ class World:
     def __init__(self, lan):
         self.facts = []
         self.model = ReferenceModel(ROBOTS, OPERATORS)
-        self.system = System(adopt=False)
-        self.system.env.update(
-            ROS_MASTER_URI='http://{}:{}'.format(machines.HOST_IP, self.system.port),
-            ROS_IP=machines.HOST_IP)
-        os.environ.update({key: self.system.env[key] for key in (
-            'ROS_MASTER_URI', 'ROS_IP', 'ROS_HOME', 'ROS_LOG_DIR')})
-        self.folder = lan.folder
-        self.computers = {name: Computer(11 + number) for number, name in enumerate(ROBOTS)}
+        self.system = System(ip=machines.HOST_IP)
+        self.folder, self.journal = lan.folder, Journal(lan.folder)
+        self.computers = {name: machines.Computer(11 + number)
+                          for number, name in enumerate(ROBOTS)}
         self.processes = {}
         self.due = []
+        # (time, what the mux waits for), as it says
+        self.said = []
+        # Drives without an undertaker: those that should end, and when; those that have not
+        self._ends, self.left = [], []
         self._calls = threading.Lock()
-        self._restarter = self.folder / 'restarter'
-        self._restarter.write_text(RESTARTER)
 
     def __enter__(self):
         self.system.start_master()
         import rospy
         from mhri.graph.ros.master_watch import MasterWatch
-        from mhri.msg import ControlMode
+        from mhri.msg import ControlMode, DriveState
         # As the node of the pad: it may choose the mode.
         rospy.init_node('mhri_joy', disable_signals=True)
         MasterWatch().start()
-        self._mode = rospy.Publisher('/mux_in/mode_select', ControlMode, queue_size=1, latch=True)
-        for key in ['mux', 'gates'] + [
+        self._mode = rospy.Publisher(graph.MODE_SELECT, ControlMode, queue_size=1, latch=True)
+        rospy.Subscriber(graph.DRIVE_STATE, DriveState, lambda state: self.said.append(
+            (time.monotonic(), state.waits_for)), queue_size=10, tcp_nodelay=True)
+        for key in ['mux'] + [
                 (kind, name) for name in ROBOTS for kind in ('robot', 'guard')
                 if kind == 'robot' or ROBOTS[name]] + ['pad', ('operator', OPERATORS[0])]:
             self.start(key)
@@ -102,12 +81,8 @@ class World:
     def __exit__(self, *_):
         import rospy
         rospy.signal_shutdown('done')
-        for key in self.processes:
-            for process in self._family(key):
-                try:
-                    process.kill()
-                except psutil.NoSuchProcess:
-                    pass
+        for process in self.processes.values():
+            self.system.kill(process)
         self.system.close()
         for computer in self.computers.values():
             computer.close()
@@ -130,6 +105,10 @@ class World:
                 self.due.remove(entry)
                 entry[1]()
             self._notice()
+            for entry in [entry for entry in self._ends if entry[0] <= now]:
+                self._ends.remove(entry)
+                if _lives(entry[1]):
+                    self.left.append(entry[1])
             if now >= until:
                 return
             time.sleep(min(POLL_S, until - now))
@@ -147,7 +126,7 @@ class World:
     # Programs.
 
     def well(self, key):
-        """Tell whether a program is there and does not hang, and so may be told something."""
+        """Return whether a program is there and does not hang, and so may be told something."""
         return self.model.parts[key].well
 
     def start(self, key):
@@ -155,86 +134,90 @@ class World:
         if key in self.processes and self.processes[key].poll() is None:
             return
         kind, name = key if isinstance(key, tuple) else (key, None)
-        env, words = dict(self.system.env), [sys.executable, PROCESS, kind]
+        env, words = {}, [sys.executable, PROCESS, kind]
         if kind in ('robot', 'guard'):
-            env.update(ROS_NAMESPACE='/' + name, ROS_IP=self.computers[name].ip)
+            env = {'ROS_NAMESPACE': '/' + name, 'ROS_IP': self.computers[name].ip}
             words.append(self.log_of(name) if kind == 'robot' else GUARD)
             words = self.computers[name].command(*words)
         elif kind == 'operator':
             words.append(name)
-        elif kind in ('mux', 'gates'):
-            words = ['bash', str(self._restarter), sys.executable, '-c',
-                     'from mhri.nodes.{} import main; main()'.format(kind), '--stand-by']
+        elif kind == 'mux':
+            words = node_words('mux', '--stand-by', self.journal.argument)
         path = self.folder / '{}.log'.format('_'.join(filter(None, (kind, name))))
-        with path.open('ab') as log:
-            process = subprocess.Popen(words, env=env, stdin=subprocess.PIPE, stdout=log,
-                                       stderr=log, start_new_session=True)
-        process.number = None
-        self.processes[key] = process
+        self.processes[key] = self.system.start(
+            *words, log=str(path), env=env, stdin=subprocess.PIPE)
+        self.processes[key].number = None
         if kind in ('pad', 'operator'):
             self.tell('stick', PAD if kind == 'pad' else name, False)
         if kind == 'pad':
             self.tell('dead_man', True)
-        if kind not in ('mux', 'gates'):
+        if kind != 'mux':
             self.tell('mend', key)
 
     def log_of(self, robot):
         """Return the path of what a robot obeyed."""
         return str(self.folder / (robot + '.moved'))
 
-    def _family(self, key):
-        try:
-            process = psutil.Process(self.processes[key].pid)
-            return [process] + process.children(recursive=True)
-        except psutil.NoSuchProcess:
-            return []
-
     def _pid(self, key):
         """Return the number of the program itself, None where it is not running."""
-        process = self.processes[key]
+        process = self.processes['mux' if key == 'undertaker' else key]
         if process.poll() is not None:
             return None
-        if key not in ('mux', 'gates'):
+        if key != 'mux':
             return process.pid
-        return next((pid for standing_by in children(process.pid)
-                     for pid in children(standing_by)), None)
+        # While the undertaker hangs, one that has ended is still its child.
+        return next((pid for pid in children(process.pid)
+                     if psutil.pid_exists(pid) and _lives(psutil.Process(pid))), None)
 
     def _notice(self):
-        """Tell where mux or gates were started again, or were ended because they hung."""
-        for key in ('mux', 'gates'):
-            process = self.processes.get(key)
-            if process is None:
-                continue
-            number = self._pid(key)
-            if number == process.number:
-                continue
-            if process.number is not None:
-                self.tell('fail', key, 'killed')
-            process.number = number
-            if number is not None:
-                self.tell('mend', key)
+        """Return whether the mux was started again, or was ended because it hung."""
+        process = self.processes.get('mux')
+        number = self._pid('mux')
+        if process is None or number == process.number:
+            return
+        if process.number is not None:
+            self.tell('fail', 'mux', 'killed')
+        process.number = number
+        if number is not None:
+            self.tell('mend', 'mux')
 
     def end(self, key, number, how):
         """End a program: SIGTERM or SIGKILL."""
         pid = self._pid(key)
         if pid is None:
             return False
-        os.kill(pid, number)
-        if number != signal.SIGKILL and self.model.parts[key].how == 'hung' and not self.well(key):
-            os.kill(pid, signal.SIGCONT)
+        drives = key == 'mux'
+        # Nobody follows if the undertaker is told to end.
+        os.kill(self.processes[key].pid if drives and number != signal.SIGKILL else pid, number)
+        for hung in (key, 'undertaker') if drives else (key,):
+            if number != signal.SIGKILL and not self.well(hung):
+                os.kill(self._pid(hung), signal.SIGCONT)
         self.tell('fail', key, how)
-        if key in ('mux', 'gates'):
+        if drives:
             self.processes[key].number = None
-            # What is ended in order stays away until it is started again, but for one that hung.
-            wait_for(lambda: self._pid(key) != pid and (
-                how == 'killed' or self._pid(key) or self.processes[key].poll() is not None),
-                10.0, 'the end of {}'.format(key))
+        if drives and number == signal.SIGKILL:
+            wait_for(lambda: self._pid(key) != pid, 10.0, 'the end of {}'.format(key))
         else:
-            self.processes[key].wait(10)
+            self.processes[key].wait(60)
+        return True
+
+    def end_undertaker(self, both=False):
+        """Kill the undertaker, and the mux at once, or let that end by itself."""
+        pid = self._pid('mux')
+        if pid is None:
+            return False
+        drive = psutil.Process(pid)
+        self.processes['mux'].kill()
+        if both:
+            drive.kill()
+        self.tell('fail', 'mux', 'both killed' if both else 'orphaned')
+        self.processes['mux'].number = None
+        self.processes['mux'].wait(60)
+        self._ends.append((time.monotonic() + ENDS_S, drive))
         return True
 
     def hang(self, key, seconds):
-        """Stop a program for a while."""
+        """Stop a program, or the undertaker, for a while."""
         pid = self._pid(key)
         if pid is None or not self.well(key):
             return False
@@ -250,15 +233,15 @@ class World:
 
     def cut(self, name, seconds):
         """Cut the link of a robot for a while."""
-        key, cable = ('link', name), self.computers[name].cable
+        key, computer = ('link', name), self.computers[name]
         if not self.well(key):
             return False
-        machines.run('ip', 'link', 'set', cable, 'down')
+        computer.unplug()
         self.tell('fail', key, 'cut')
 
         def plug():
             self.tell('mend', key)
-            machines.run('ip', 'link', 'set', cable, 'up')
+            computer.plug()
         self.later(seconds, plug)
         return True
 
@@ -286,8 +269,7 @@ class World:
             return False
         if fact:
             self.tell(*fact)
-        self.processes[key].stdin.write((line + '\n').encode())
-        self.processes[key].stdin.flush()
+        tell(self.processes[key], line)
         return True
 
     def stick(self, name, out):
@@ -321,7 +303,7 @@ class World:
         """Take control; waits until it is done."""
         log = self.folder / 'operator_{}.log'.format(operator)
         count = log.read_text().count('taken')
-        if not (self.well('gates') and self.well('master')) or not self.say(
+        if not (self.well('mux') and self.well('master')) or not self.say(
                 ('operator', operator), 'take'):
             return False
         try:
@@ -348,7 +330,7 @@ class World:
 
         def call():
             try:
-                answer.append(rospy.ServiceProxy('/mux/set_stop_all', SetBool)(stopped).success)
+                answer.append(rospy.ServiceProxy(graph.SET_STOP_ALL, SetBool)(stopped).success)
             except (rospy.ServiceException, rospy.ROSException, OSError):
                 answer.append(None)
         thread = threading.Thread(target=call, daemon=True)
@@ -387,6 +369,8 @@ class World:
         wait_for(lambda: self.wait(0.05) or all(
             part.well for key, part in self.model.parts.items() if key != second),
             20.0, 'everything to be there')
+        if self.model.holders != {OPERATORS[0]}:
+            self.take(OPERATORS[0])
         self.check(OPERATORS[0], ROBOTS)
         if rival:
             self.wait(max(0.0, self.model.well_since - time.monotonic()))

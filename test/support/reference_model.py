@@ -9,39 +9,52 @@ for each end of motion. Time is in seconds of a clock that never goes back. Wher
 silent, and while an end of motion may take its time, the answer is EITHER.
 """
 from collections import namedtuple
+import math
 
 STAND, DRIVE, EITHER = 'must stand', 'must drive', 'either'
 JOY, PAD = 'joy', 'ps3joy'
 
 # Within what time a robot stands [s]: the contract's timings, and issue 10 A for what hangs.
 AT_ONCE_S, SILENT_S, LEASE_S, MASTER_S = 0.05, 0.55, 1.6, 1.5
-GATES_KILLED_S, GATES_HUNG_S, GUARD_S, GUARD_LOST_S = 1.5, 3.0, 0.3, 0.55
+# After the drive was killed, hangs, or lost the undertaker; after that has hung, which is said too.
+KILLED_S, HUNG_S, ORPHANED_S, UNDERTAKER_S = 0.05, 0.6, 0.2, 2.0
+GUARD_S, GUARD_LOST_S = 0.3, 0.55
 # A robot is not heard for so long before it is held, and a guard drops what is older [s].
 NOT_HEARD_S, ANSWER_S = 1.0, 1.0
 # How long it may take until all is well again [s]: a program starts, a hung one goes on, all else.
 START_S, GO_ON_S, SAY_S, MASTER_BACK_S = 5.0, 3.0, 2.0, 6.0
 DRIVES_WITHIN_S, CENTRED_S = 2.0, 0.3
-# After mux or gates are back: until they know again who is in control and what drives [s].
+MUX_S = {'killed': KILLED_S, 'hung': HUNG_S, 'both killed': math.inf, 'orphaned': ORPHANED_S,
+         'ended': AT_ONCE_S}
+# How the mux may end so that the undertaker ends, too.
+WITH_UNDERTAKER = ('ended', 'both killed', 'orphaned')
+# After the mux is back: until it knows again who is in control and what drives [s].
 UNSURE_S = 4.0
+# Until a new mux has reached its robots, and until one that goes on has [s].
+AGAIN_S, AWAKE_S = 1.5, 0.3
+# A mux that lived longer than this leaves to the next who is in control [s].
+KEEPS_S = 3.0
 
 Verdict = namedtuple('Verdict', 'what why since')
 
 
 class Part:
-    """A program or a link: well, or since when it is not and how ('killed', 'ended', 'hung')."""
+    """A program or a link: well, or since when it is not and how: 'killed', 'ended', 'hung', or, of
+    the mux, 'both killed' (with the undertaker) or 'orphaned' (that was killed alone)."""
 
     def __init__(self, well=True):
         self.well, self.how, self.since, self.lasted = well, '', -1e9, 0.0
-        self.back_at, self.another = -1e9, not well
+        self.back_at, self.lived, self.another = -1e9, 0.0, not well
 
     def fail(self, how, now):
-        """Take note of an end; one that hung first and was ended then has hung all the time."""
+        """Note an end; one that hung first and was ended then has hung all the time."""
         if self.well:
             self.since, self.how, self.well, self.another = now, how, False, False
-        self.another = self.another or how in ('killed', 'ended')
+            self.lived = now - self.back_at
+        self.another = self.another or how != 'hung'
 
     def mend(self, now):
-        """Take note that it is back."""
+        """Note that it is back."""
         if not self.well:
             self.well, self.back_at, self.lasted = True, now, now - self.since
 
@@ -57,7 +70,7 @@ class Stick:
         self.changed_at, self.centred_at, self.centred_since = 0.0, 0.0, 0.0
 
     def say(self, out, now):
-        """Take note of what it says from now on."""
+        """Note what it says from now on."""
         if self.out and not out:
             self.centred_since = now
         if not self.out:
@@ -80,7 +93,7 @@ class ReferenceModel:
 
     def __init__(self, robots, operators):
         self.guarded = dict(robots)
-        self.parts = {key: Part() for key in ('mux', 'gates', 'master', 'pad')}
+        self.parts = {key: Part() for key in ('mux', 'undertaker', 'master', 'pad')}
         self.parts.update({('robot', name): Part() for name in robots})
         self.parts.update({('link', name): Part() for name in robots})
         self.parts.update({('guard', name): Part() for name in robots if robots[name]})
@@ -101,16 +114,18 @@ class ReferenceModel:
     # What happens.
 
     def tell(self, now, what, *args):
-        """Take in an event; see the methods whose names begin with ``on_``."""
+        """Handle an event; see the methods whose names begin with ``on_``."""
         for stick in self.sticks.values():
             stick.say(stick.out, now)
         getattr(self, 'on_' + what)(now, *args)
         self._look(now)
 
     def on_fail(self, now, key, how):
-        """A program (or 'link') has been 'killed', 'ended', 'hung' or 'cut'."""
+        """A program (or 'link') has failed: see :class:`Part`, or 'cut'."""
         part = self.parts[key]
         part.fail(how, now)
+        if key == 'mux' and how in WITH_UNDERTAKER:
+            self.parts['undertaker'] = Part()
         if key[0] == 'operator' and how != 'hung':
             self._gone(key[1], now)
         if key[0] == 'guard' and how != 'hung':
@@ -194,15 +209,21 @@ class ReferenceModel:
     # What comes back.
 
     def _back_mux(self, now, _key, part, starting):
-        if starting:
+        if not starting:
+            if part.lasted > SILENT_S + 0.5:
+                self._all_wait(now, AT_ONCE_S, 'the mux was away')
+        else:
             self.sticks[PAD].let_go = False
-        if starting or part.lasted > SILENT_S + 0.5:
-            self._all_wait(part.since, SILENT_S, 'the mux was away')
+            for name in self.guarded:
+                self._wait(part.since, min(self._mux_limit_s(name), part.lasted),
+                           'the mux is another one', name)
+            if part.how in WITH_UNDERTAKER or part.lived < KEEPS_S:
+                self.holders = {name for name in self.chosen
+                                if self.parts['operator', name].well}
 
-    def _back_gates(self, now, _key, part, starting):
-        if starting:
-            self._all_wait(part.since, None, 'the gates are others')
-            self.holders = {name for name in self.chosen if self.parts['operator', name].well}
+    def _back_undertaker(self, now, _key, part, _starting):
+        if part.lasted > UNDERTAKER_S and self.parts['mux'].well:
+            self._all_wait(now, AT_ONCE_S, 'the undertaker was away')
 
     def _back_master(self, now, _key, part, _starting):
         if part.lasted > MASTER_S + 0.5:
@@ -242,11 +263,9 @@ class ReferenceModel:
             self._wait(now, SAY_S if starting else GUARD_LOST_S, 'its guard is back', key[1])
 
     def _gone(self, name, now):
-        """Take note of an operator's end: nobody gets its seat who was refused before."""
+        """Note an operator's end: nobody gets its seat who was refused before."""
         if self.holders == {name}:
             self._all_wait(now, AT_ONCE_S, 'its operator has gone')
-        elif name in self.holders:
-            self.holders.discard(name)
 
     def _unwell_until(self, when):
         self.well_since = max(self.well_since, when)
@@ -259,8 +278,6 @@ class ReferenceModel:
         """Let a robot wait for neutral from now on; ``source``: only where that one drives."""
         if source is not None and self._modes(now) != {source}:
             return
-        if limit_s is None:
-            limit_s = GUARD_S if self._is_guarded(name) else GATES_KILLED_S
         self.causes[name] = (now, limit_s, why)
 
     # What follows from it.
@@ -286,7 +303,7 @@ class ReferenceModel:
                 names.add(PAD)
             else:
                 names |= self.holders
-                if self._unsure('mux', now) or self._unsure('gates', now):
+                if self._unsure('mux', now):
                     names |= {name for name in self.chosen if self.parts['operator', name].well}
         return names
 
@@ -294,11 +311,11 @@ class ReferenceModel:
         """Yield (words, limit) of everything that keeps a robot from moving."""
         if self.stopped:
             yield 'stop-all', AT_ONCE_S
-        for key, limits in (('mux', {'hung': SILENT_S, 'killed': SILENT_S, 'ended': AT_ONCE_S}),
-                            ('gates', self._gates_limits(name))):
-            part = self.parts[key]
-            if not part.well:
-                yield '{} {}'.format(key, part.how), limits[part.how]
+        mux = self.parts['mux']
+        if not mux.well:
+            yield 'mux ' + mux.how, self._mux_limit_s(name)
+        elif not self.parts['undertaker'].well:
+            yield 'undertaker hung', UNDERTAKER_S
         holders = {holder: self.parts['operator', holder] for holder in self.holders}
         if not any(part.well for part in holders.values()):
             hung = any(part.how == 'hung' for part in holders.values())
@@ -306,16 +323,28 @@ class ReferenceModel:
         elif not any(name in self.chosen[holder] for holder in holders):
             yield 'not checked', AT_ONCE_S
         yield from self._sticks_ask(now)
-        if self._is_guarded(name) and not self.parts['link', name].well:
+        link = self.parts['link', name]
+        if not link.well and self._had_guard(name, link.since):
             yield 'link cut', GUARD_S
 
     def _is_guarded(self, name):
         return self.guarded[name] and self.parts['guard', name].well
 
-    def _gates_limits(self, name):
-        killed = GUARD_S if self._is_guarded(name) else GATES_KILLED_S
-        hung = GUARD_S if self._is_guarded(name) else GATES_HUNG_S
-        return {'killed': killed, 'hung': hung, 'ended': AT_ONCE_S}
+    def _had_guard(self, name, when):
+        """Return whether a robot is guarded, and was at a time: one that starts knows nothing."""
+        if not self._is_guarded(name):
+            return False
+        guard = self.parts['guard', name]
+        return not guard.another or when - guard.back_at >= START_S
+
+    def _mux_limit_s(self, name):
+        """Return within what time a robot stands once the mux has failed as it did last [s]."""
+        mux, undertaker = self.parts['mux'], self.parts['undertaker']
+        limit_s = MUX_S.get(mux.how, 0.0)
+        if mux.how in ('killed', 'hung'):
+            # One that hangs writes when it goes on.
+            limit_s += max(0.0, undertaker.back_at - mux.since) if undertaker.well else math.inf
+        return min(limit_s, GUARD_S) if self._had_guard(name, mux.since) else limit_s
 
     def _sticks_ask(self, now):
         speakers = {stick: self.parts['pad' if stick == PAD else ('operator', stick)].well
@@ -335,7 +364,8 @@ class ReferenceModel:
             for key in [key for key in self.missing if key[0] == name and key[1] not in asked]:
                 del self.missing[key]
             for words, limit_s in asked.items():
-                self.missing.setdefault((name, words), (now, limit_s))
+                since, _ = self.missing.get((name, words), (now, None))
+                self.missing[name, words] = since, limit_s
 
     def verdict(self, name, now, slack_s):
         """Return what the contract demands of a robot now.
@@ -356,6 +386,14 @@ class ReferenceModel:
         if due is None and self._must_drive(name, now, slack_s):
             return Verdict(DRIVE, 'centred and deflected', now)
         return Verdict(EITHER, '', now)
+
+    def must_say(self, now, slack_s):
+        """Return whether the mux must say by now that it waits for the undertaker."""
+        mux, master = self.parts['mux'], self.parts['master']
+        since = max(self.parts['undertaker'].since, mux.back_at + UNSURE_S,
+                    master.back_at + MASTER_BACK_S)
+        return not self.parts['undertaker'].well and mux.well and master.well \
+            and now - since > UNDERTAKER_S + slack_s
 
     def _waits(self, name, now, slack_s):
         """Yield the causes after which no stick that may drive has been centred since."""
@@ -381,23 +419,20 @@ class ReferenceModel:
         late = now - link.back_at < 1.0 + 1.2 * link.lasted + slack_s
         if late and not (guarded and link.lasted > ANSWER_S + 0.3 + slack_s):
             return False
-        # The word that makes the robot stand comes from the gates, which notice the loss first.
+        # The word that makes the robot stand comes from the mux, which notices the loss first.
         return guard is None or (
             now - (guard.back_at if guard.well else guard.since) > GUARD_LOST_S + slack_s)
 
     def _blocked_until(self, name):
         """Return until when nobody may be there to bring a robot its zero."""
-        until = -1e9
-        for key, limits, again_s in (
-                ('gates', self._gates_limits(name), 1.0),
-                ('mux', {'hung': SILENT_S, 'killed': SILENT_S, 'ended': AT_ONCE_S}, 0.5)):
-            part = self.parts[key]
-            if not part.well:
-                until = max(until, part.since + limits[part.how])
-            else:
-                again = limits.get(part.how, 0.0)
-                until = max(until, min(part.back_at + again_s, part.since + again + again_s))
-        return until
+        part = self.parts['mux']
+        until = part.since + self._mux_limit_s(name)
+        if part.well:
+            # It has its zero by the undertaker or, if that could not, by the next mux.
+            until = min(until, part.back_at + (AGAIN_S if part.another else AWAKE_S))
+        link = self.parts['link', name]
+        # Where no word reaches it, the lease of its guard ends.
+        return until if link.well else max(until, link.since + GUARD_S)
 
     def _must_drive(self, name, now, slack_s):
         if self.unknown or not all(part.well for key, part in self.parts.items()

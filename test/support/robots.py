@@ -1,15 +1,16 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A witness of the robots' own odometry, and a stick to drive them: for tests that are nodes."""
+"""What robots were told and did, and a stick to drive them: for tests that are nodes."""
+import contextlib
 import math
 import threading
 import time
 
 from nav_msgs.msg import Odometry
 import rospy
-from sensor_msgs.msg import Joy
 
 from mhri.robots.link import Motion
+from support import graph, rostest_tools
 from support.ros_system import wait_for
 
 
@@ -71,10 +72,10 @@ class Witness:
             return any(entry[0] >= since and not entry[1].is_standstill() for entry in self._log)
 
 
-def seconds_to_standstill(witnesses, since, timeout_s=5.0):
+def seconds_to_standstill(witnesses, since):
     """Wait until all robots stand still; return {name: seconds from ``since``}."""
-    wait_for(lambda: all(witness.stood_still_at(since) for witness in witnesses), timeout_s,
-             'the robots to stand still')
+    wait_for(lambda: all(witness.stood_still_at(since) for witness in witnesses),
+             what='the robots to stand still')
     return {witness.name: witness.stood_still_at(since) - since for witness in witnesses}
 
 
@@ -85,33 +86,81 @@ def report(event, times):
         for name, seconds in sorted(times.items()))), flush=True)
 
 
-class Stick:
-    """A device that sends its Joy at 20 Hz on a thread, as an input node does."""
+class RobotLog:
+    """What one robot was told, and how its body moved: rows (when [s], m/s, rad/s)."""
 
-    def __init__(self, topic='/mux_in/pedal'):
-        self._publisher = rospy.Publisher(topic, Joy, queue_size=1, tcp_nodelay=True)
-        self._axes = (0.0, 0.0)
-        self._changed = threading.Condition()
-        self._done = False
-        threading.Thread(target=self._run, daemon=True).start()
+    def __init__(self, path):
+        self.path = path
+        self._read = {}
 
-    def _run(self):
-        with self._changed:
-            while not self._done and not rospy.is_shutdown():
-                self._publisher.publish(Joy(axes=list(self._axes)))
-                self._changed.wait(0.05)
+    def rows(self, what='told'):
+        """Return all rows of ``told`` or ``moved``; in an hour those are too many to read anew."""
+        at, rows = self._read.setdefault(what, [0, []])
+        with contextlib.suppress(FileNotFoundError), open('{}.{}'.format(self.path, what)) as log:
+            log.seek(at)
+            for line in iter(log.readline, ''):
+                if not line.endswith('\n'):
+                    break
+                rows.append(tuple(map(float, line.split())))
+                self._read[what][0] += len(line)
+        return rows[:]
+
+    def after(self, since, until=math.inf):
+        """Return what it was told in a time."""
+        return [row for row in self.rows() if since <= row[0] <= until]
+
+    def flips(self, since=0.0):
+        """Return what its flipper was told after a time: rows (when [s], value)."""
+        return [row for row in self.rows('told.flipper') if row[0] >= since]
+
+    def moves(self):
+        """Return whether its last command was to move."""
+        return any(any(row[1:]) for row in self.rows()[-1:])
+
+    def drives(self):
+        """Return whether its last command was to move, and its body does."""
+        return self.moves() and any(abs(row[1]) > 0.05 for row in self.rows('moved')[-1:])
+
+    def stands_from(self, since, what, least=0.0):
+        """Return when it stands for good: the first row after which no other moves it.
+
+        None where it never does.
+        """
+        rows = self.rows(what)
+        moves = [index for index, row in enumerate(rows)
+                 if max(abs(row[1]), abs(row[2])) > least]
+        after = rows[moves[-1] + 1:] if moves else rows
+        return max(since, after[0][0]) if after else None
+
+
+class Stick(rostest_tools.Stick):
+    """The stick of a pedal, whose node this process is."""
+
+    def __init__(self, topic=graph.PEDAL):
+        super().__init__(topic)
+        self.hold(0.0, 0.0)
 
     def hold(self, forward, turn):
         """Hold the stick at fractions in [-1, 1] from now on."""
-        with self._changed:
-            self._axes = (turn, forward)
-            self._changed.notify()
+        return super().hold((turn, forward))
 
-    def connected(self):
-        return self._publisher.get_num_connections() > 0
+    def drive(self, forward, turn, moving, timeout_s, what):
+        """Centre the stick and push it, until who is driven moves.
 
-    def unplug(self):
-        """Fall silent in the middle of whatever is held."""
-        with self._changed:
-            self._done = True
-            self._changed.notify()
+        :raises AssertionError: see :func:`wait_for`
+        """
+        tries = []
+
+        def driven():
+            self.hold(0.0, 0.0)
+            # Long enough for a few messages of it.
+            time.sleep(0.15)
+            begun = self.hold(forward, turn)
+            # On a busy computer each attempt is given more time than the last one.
+            tries.append(begun)
+            while time.monotonic() < begun + min(10.0, float(len(tries))):
+                if moving():
+                    return True
+                time.sleep(0.02)
+            return False
+        wait_for(driven, timeout_s, what)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A room to listen to, as a stream of sound, and what listening costs."""
+"""A room to listen to, as a stream of sound."""
 import os
 import shutil
 import tempfile
@@ -8,24 +8,9 @@ import threading
 import time
 
 import numpy as np
-import psutil
 
 from mhri.voice.sound import BLOCK_BYTES, BLOCK_S
 from support import speech
-
-
-def tree_cpu_s(pid):
-    """Return what a process took so far, with all it has begun, ended or not [s]."""
-    process = psutil.Process(pid)
-    own = process.cpu_times()
-    total = own.user + own.system + own.children_user + own.children_system
-    for child in process.children(recursive=True):
-        try:
-            times = child.cpu_times()
-        except psutil.NoSuchProcess:
-            continue
-        total += times.user + times.system
-    return total
 
 
 class Room:

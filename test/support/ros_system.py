@@ -20,24 +20,26 @@ from support.xvfb import start_xvfb
 
 
 # How long a computer that is busy with other things may take for what is done in a moment [s].
-PATIENCE_S = 60.0
+TIMEOUT_S = 60.0
 # Who waits for less asks whether it is quick [s].
 QUICK_S = 10.0
 # The longest rest between two looks that take long themselves: at the master, at processes [s].
 REST_S = 0.05
+# Marks of the ports that were given out here, held until this process ends.
+_GIVEN_OUT = []
 
 
-def wait_for(condition, timeout_s=PATIENCE_S, what='the condition', poll_s=0.002):
+def wait_for(condition, timeout_s=TIMEOUT_S, what='the condition', poll_s=0.002):
     """Return the first true value of a condition.
 
     Looking takes a third of a processor at most, or what is waited for would come late for it.
 
-    :param timeout_s: from QUICK_S on it is patience, of which there is never less than PATIENCE_S
+    :param timeout_s: from QUICK_S on it is patience, of which there is never less than TIMEOUT_S
     :param what: what is waited for, or a function that says so at the end
     :raises AssertionError: it did not come true in time
     """
     if timeout_s >= QUICK_S:
-        timeout_s = max(timeout_s, PATIENCE_S)
+        timeout_s = max(timeout_s, TIMEOUT_S)
     deadline = time.monotonic() + timeout_s
     while True:
         begun = time.monotonic()
@@ -71,17 +73,21 @@ def free_port():
     """Return a TCP port on loopback that nobody uses.
 
     It is none of those that the kernel gives to whoever asks for any (32768 and above), as each
-    node does: one of another test would have it before who was told it listens there.
+    node does: one of another test would have it before who was told it listens there. Nor is it
+    one that was given out to another test, which may only be about to listen.
     """
     while True:
-        port = random.SystemRandom().randrange(12000, 32768)
+        port, mark = random.SystemRandom().randrange(12000, 32768), socket.socket(socket.AF_UNIX)
         with socket.socket() as probe, contextlib.suppress(OSError):
+            mark.bind('\0mhri_test_port_{}'.format(port))
             probe.bind(('', port))
+            _GIVEN_OUT.append(mark)
             return port
+        mark.close()
 
 
 def answers(port):
-    """Tell whether something accepts connections on a loopback port."""
+    """Return whether something accepts connections on a loopback port."""
     with socket.socket() as probe:
         probe.settimeout(0.2)
         return probe.connect_ex(('127.0.0.1', port)) == 0
@@ -94,6 +100,35 @@ def children(number):
             return [int(word) for word in numbers.read().split()]
     except OSError:
         return []
+
+
+def child_processes(word, number=None):
+    """Return the children of a process, by default this one, of which an argument has a word in it.
+
+    One that ends meanwhile is not among them, whoever it is.
+    """
+    found = []
+    for child in psutil.Process(number).children():
+        with contextlib.suppress(psutil.NoSuchProcess):
+            if child.status() != psutil.STATUS_ZOMBIE and any(
+                    word in one for one in child.cmdline()):
+                found.append(child)
+    return found
+
+
+def family_of(process):
+    """Return a process and all that it has started and they have, none of one that is gone."""
+    try:
+        first = psutil.Process(process.pid)
+        return [first] + first.children(recursive=True)
+    except psutil.NoSuchProcess:
+        return []
+
+
+def tell(process, line):
+    """Write a line to the standard input of a process."""
+    process.stdin.write((line + '\n').encode())
+    process.stdin.flush()
 
 
 def processes_with(*words, master=None):
@@ -115,18 +150,27 @@ def processes_with(*words, master=None):
     return found
 
 
+def node_words(name, *words):
+    """Return the command line of one of mhri's executables by the name of its module."""
+    return [sys.executable, '-c', 'from mhri.nodes.{} import main; main()'.format(name), *words]
+
+
 class System:
     """Processes around one master on a port of its own; use it as a context manager.
 
     ``adopt`` puts the environment into this process too, for tests that are nodes themselves.
+
+    :param ip: address of this computer that other ones of the test know
     """
 
-    def __init__(self, adopt=True):
+    def __init__(self, adopt=True, ip='127.0.0.1'):
         self.port = free_port()
         self.home = tempfile.mkdtemp(prefix='mhri_test_')
-        self.env = dict(os.environ, ROS_MASTER_URI='http://127.0.0.1:{}'.format(self.port),
-                        ROS_IP='127.0.0.1', ROS_HOME=self.home, PYTHONUNBUFFERED='1',
-                        ROS_LOG_DIR=os.path.join(self.home, 'log'))
+        self.env = dict(os.environ, ROS_MASTER_URI='http://{}:{}'.format(ip, self.port),
+                        ROS_IP=ip, ROS_HOME=self.home, PYTHONUNBUFFERED='1',
+                        ROS_LOG_DIR=os.path.join(self.home, 'log'),
+                        # Settings are nobody's own.
+                        XDG_CONFIG_HOME=os.path.join(self.home, 'config'))
         self.env.pop('ROS_HOSTNAME', None)
         if adopt:
             os.environ.pop('ROS_HOSTNAME', None)
@@ -153,12 +197,17 @@ class System:
                 with open(process.log, errors='replace') as log:
                     print(log.read()[-2000:])
 
-    def start(self, *command, log=None):
-        """Start a process in a group of its own; its output goes to a file in ``home``."""
+    def start(self, *command, log=None, env=None, stdin=subprocess.DEVNULL):
+        """Start a process in a group of its own; its output goes to a file.
+
+        :param log: the file, in ``home`` or with its path
+        :param env: what its environment has beside that of the system
+        :param stdin: ``subprocess.PIPE`` for one that :func:`tell` tells things
+        """
         path = os.path.join(self.home, log or 'out_{}.log'.format(len(self._processes)))
         with open(path, 'ab') as output:
-            process = subprocess.Popen(command, env=self.env, stdout=output,
-                                       stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL,
+            process = subprocess.Popen(command, env=dict(self.env, **(env or {})), stdout=output,
+                                       stderr=subprocess.STDOUT, stdin=stdin,
                                        start_new_session=True)
         process.log = path
         self._processes.append(process)
@@ -176,8 +225,7 @@ class System:
 
     def node(self, name, *args):
         """Start one of mhri's executables by the name of its module."""
-        return self.start(sys.executable, '-c',
-                          'from mhri.nodes.{} import main; main()'.format(name), *args)
+        return self.start(*node_words(name, *args))
 
     def launch(self, *args):
         """Start roslaunch with a file of this package."""
@@ -196,13 +244,10 @@ class System:
 
         roslaunch gives its nodes sessions of their own, so a process group is not enough.
         """
-        try:
-            members = psutil.Process(process.pid).children(recursive=True) if family else []
-            for member in [psutil.Process(process.pid)] + members:
+        for member in family_of(process) if family else family_of(process)[:1]:
+            with contextlib.suppress(psutil.NoSuchProcess):
                 member.send_signal(number)
-        except psutil.NoSuchProcess:
-            pass
-        process.wait(20)
+        process.wait(TIMEOUT_S)
 
     def close(self):
         """End everything that was started here, newest first."""

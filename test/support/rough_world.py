@@ -12,7 +12,7 @@ import random
 import numpy as np
 
 from mhri.base.limits import Velocity
-from mhri.base.mocap import Pose
+from mhri.base.geometry import Pose
 from mhri.driving.stick_brake import StickBrake
 from mhri.robots.pose_track import PoseTrack
 from mhri.sensors.laser_scan import laser_scan
@@ -157,7 +157,7 @@ class Wander(Task):
 
 
 class Stick:
-    """Instead of a run: what a stick says goes through the brake alone, as in the gates."""
+    """Instead of a run: what a stick says goes through the brake alone, as in the mux."""
 
     state = RUNNING
 

@@ -47,11 +47,14 @@ class Plugin(QObject):
 
 
 def plugin_class(monkeypatch):
-    """Return mhri's plugin, over this stand-in."""
+    """Return mhri's plugin, over this stand-in, and a list that gets the presenter of each."""
     package, module = types.ModuleType('rqt_gui_py'), types.ModuleType('rqt_gui_py.plugin')
     module.Plugin = Plugin
     monkeypatch.setitem(sys.modules, 'rqt_gui_py', package)
     monkeypatch.setitem(sys.modules, 'rqt_gui_py.plugin', module)
     monkeypatch.delitem(sys.modules, 'mhri.mhri_plugin', raising=False)
-    from mhri.mhri_plugin import MhriPlugin
-    return MhriPlugin
+    from mhri import mhri_plugin
+    make, made = mhri_plugin.ScreenPresenter, []
+    monkeypatch.setattr(mhri_plugin, 'ScreenPresenter',
+                        lambda *words: made.append(make(*words)) or made[-1])
+    return mhri_plugin.MhriPlugin, made

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Screens with robots that nobody drives, to be looked at pixel by pixel."""
 import numpy as np
-from python_qt_binding.QtCore import QPoint, Qt
+from python_qt_binding.QtCore import QPoint, QRect, Qt
 from python_qt_binding.QtGui import QImage
 
 from mhri.base import views
@@ -10,10 +10,16 @@ from mhri.camera.images import Frame
 from mhri.screen.gui.screen import ScreenWidget
 from mhri.screen.gui.windows import TurtleBotWindow
 
+TINY, SMALL, LARGE = (1024, 600), (1280, 720), (1920, 1080)
 # A colour that nothing else on the screen has, also where the header darkens it.
 MAGENTA = (220, 0, 220)
 KINDS = {
     'plain': {}, 'long': {'long_names': True}, 'group': {'group': True}, 'stopped': {'stop': True}}
+
+
+def place_in(window, widget):
+    """Return the rectangle of a widget in its window."""
+    return QRect(widget.mapTo(window, QPoint(0, 0)), widget.size())
 
 
 def frame_of(colour, size=(640, 480)):
@@ -54,7 +60,7 @@ class Scene:
         self.screen.resize(*size)
         self.robots = robots_of(count, **kind)
         self.stop = kind.get('stop', False)
-        self.view = views.PanelView(
+        self.view = views.ScreenView(
             ros=views.ROS_CONNECTED, sources=(('joy', 'Virtual joystick'), ('ps3joy', 'Pad')),
             mode=mode, status='driving bot1', robots=self.robots, camera_bits_per_s=12e6,
             stop_all=self.stop)

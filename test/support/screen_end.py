@@ -46,4 +46,4 @@ class Screen:
     def end(self):
         if self._process.poll() is None:
             self.do('end')
-            self._process.wait(20)
+            self._process.wait(START_S)

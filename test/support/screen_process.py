@@ -21,7 +21,7 @@ def shown(operator):
     view = operator.view()
     return json.dumps({
         'ros': view.ros, 'stop_all': view.stop_all, 'stop_taken': view.stop_taken,
-        'answers': view.answers, 'ours': view.control.ours, 'who': view.control.who,
+        'answers': view.answers, 'ours': view.control.ours, 'who': view.control.words,
         'selected': list(operator.selection.selected), 'status': view.status,
         'robots': {robot.name: [robot.driven, robot.stands, robot.note] for robot in view.robots}})
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The programs around mux and gates in the test of random events: each a process, to be killed.
+"""The programs around the mux in the test of random events: each a process, to be killed.
 
 ``soak_process.py robot LOG``         obeys ``cmd_vel`` for ever, and logs what it obeys
 ``soak_process.py guard FILE``        runs the guard of that file
@@ -95,7 +95,7 @@ def operator(name):
             joy.publish(axes=[OUT[1], OUT[0]] if state['out'] else [0.0, 0.0])
         else:
             try:
-                rospy.ServiceProxy('/gates/take_control', Trigger)()
+                rospy.ServiceProxy('/mux/take_control', Trigger)()
             except rospy.ServiceException:
                 return
             select.publish(robots=state['chosen'])

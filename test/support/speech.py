@@ -85,7 +85,7 @@ def _recorded(text, folder):
 
 
 def can_say(text, voice):
-    """Tell whether a voice can say a sentence: recordings need not be of all of them."""
+    """Return whether a voice can say a sentence: recordings need not be of all of them."""
     program, _, name = voice.name.rpartition(':')
     return program != 'wav' or _recorded(text, name).exists()
 
@@ -139,13 +139,3 @@ def in_room(sound, random, kind='white', ratio_db=None, before_s=1.0, after_s=0.
     level = HISS_RMS if ratio_db is None else SPEECH_RMS / 10.0 ** (ratio_db / 20.0)
     whole += noise(kind, len(whole), random) * level
     return np.clip(np.round(whole), -32768, 32767).astype('<i2').tobytes()
-
-
-def write_wav(path, text):
-    """Write a recording of a sentence in a quiet room, as ``~source`` takes it."""
-    with wave.open(path, 'wb') as stream:
-        stream.setnchannels(1)
-        stream.setsampwidth(2)
-        stream.setframerate(RATE_HZ)
-        stream.writeframes(in_room(speak(text, Voice('en-us+m3', 150, 50)),
-                                   np.random.RandomState(1)))

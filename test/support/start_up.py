@@ -3,7 +3,7 @@
 """How long a window takes to come up: a bare one of PyQt's, or the screen of mhri.
 
 ``start_up.py bare`` or ``start_up.py screen ROBOT...``; it writes when it was painted and could be
-used [s, CLOCK_MONOTONIC], and ends. The screen can be used when mux and gates have answered.
+used [s, CLOCK_MONOTONIC], and ends. The screen can be used when the mux has answered.
 """
 import sys
 import time
@@ -27,10 +27,10 @@ def screen(app, robots):
     program = Standalone(['panel'], remember=False)
     program.restore(afresh=True)
     program.window.show()
-    program.host.start(robots)
+    program.presenter.start(robots)
 
     def usable():
-        view = program.host.operator.view()
+        view = program.presenter.operator.view()
         return view.mode is not None and view.control.ours
     return program.window, lambda: program.run(app), usable
 

@@ -4,8 +4,7 @@
 
 A file ``sleep`` or ``hold`` there lets the view block while it is painted, asleep or with Python's
 lock held, until there is a file ``end``, or the seconds in the file have passed. ``stuck`` is there
-while it does; ``places`` says where the stop button, while it is shown, and the middle of the
-window are [px of the screen].
+while it does; ``place`` says where the stop button is while it is shown [px of the screen].
 """
 import ctypes
 import json
@@ -55,10 +54,8 @@ class StuckView(QWidget):
     def _look(self):
         button = self.window().findChild(StopBar).stop_button
         if button.isVisible():
-            self._write('places', json.dumps([
-                [at.x(), at.y()] for at in (
-                    button.mapToGlobal(button.rect().center()),
-                    self.window().mapToGlobal(self.window().rect().center()))]))
+            at = button.mapToGlobal(button.rect().center())
+            self._write('place', json.dumps([at.x(), at.y()]))
         for word in HANGS:
             path = os.path.join(self._folder, word)
             if os.path.exists(path):

@@ -7,7 +7,7 @@ import random
 import numpy as np
 
 from mhri.base.limits import Velocity
-from mhri.base.mocap import Pose
+from mhri.base.geometry import Pose
 from mhri.base.robot_types import Limits
 from mhri.sensors.brake import Surroundings
 from mhri.sensors.laser_scan import laser_scan

@@ -29,19 +29,18 @@ class TwoLasers:
 
     :param around: called for (``LaserScan`` with 360 ranges, counted to the left from straight
         ahead, ``Odometry``): what it measures and where it is; stamped now where they are not
-    :param tf: whether it says on /tf where the lasers sit
     """
 
     #: of the robot's type: for its parameter ``/<name>/mhri``
     TYPE = {'scan': ['front_scan', 'rear_scan'], 'odometry': ['stage_odom']}
 
-    def __init__(self, name, around, tf=True):
+    def __init__(self, name, around):
         self._name = name
         self._around = around
         self._scans = [rospy.Publisher('/{}/{}'.format(name, topic), LaserScan, queue_size=1)
                        for topic in self.TYPE['scan']]
         self._odometry = rospy.Publisher('/{}/stage_odom'.format(name), Odometry, queue_size=1)
-        self._tf = rospy.Publisher('/tf', TFMessage, queue_size=5) if tf else None
+        self._tf = rospy.Publisher('/tf', TFMessage, queue_size=5)
         self._edges = [edge(name + '/odom', name + '/base'),
                        edge(name + '/base', name + '/front_laser'),
                        edge(name + '/base', name + '/rear_laser', math.pi)]
@@ -53,10 +52,9 @@ class TwoLasers:
         while not self._done.wait(0.05):
             measured, there = self._around()
             now = rospy.Time.now()
-            if self._tf is not None:
-                for each in self._edges:
-                    each.header.stamp = now
-                self._tf.publish(self._edges)
+            for each in self._edges:
+                each.header.stamp = now
+            self._tf.publish(self._edges)
             odometry = Odometry(pose=there.pose, twist=there.twist)
             odometry.header.frame_id = self._name + '/odom'
             odometry.header.stamp = there.header.stamp or now
@@ -75,5 +73,5 @@ class TwoLasers:
         """Say nothing any more."""
         self._done.set()
         self._thread.join()
-        for publisher in self._scans + [self._odometry] + ([self._tf] if self._tf else []):
+        for publisher in self._scans + [self._odometry, self._tf]:
             publisher.unregister()

@@ -1,10 +1,11 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A small real system to be attacked: mux, gates, the panel's backend, two robots and one stick.
+"""A small real system to be attacked: mux, the panel's backend, two robots and one stick.
 
 All are processes of their own, so that the attacker's work delays nothing but the attacks. The
 stick only ever drives straight ahead: whatever else a robot is told, nobody commanded.
 """
+import itertools
 import os
 import subprocess
 import sys
@@ -13,15 +14,15 @@ import time
 import psutil
 import rosgraph
 
-from support.ros_system import System, wait_for
+from support import graph
+from support.robots import RobotLog
+from support.ros_system import System, tell, TIMEOUT_S, wait_for
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 ROBOTS = ('bot1', 'bot2')
 # Of the template "generic", and of float arithmetic.
 FASTEST_MPS = 0.5 + 1e-9
 STOP_S = 0.05
-# A word that was under way when the stick was centred, or the stop pressed.
-UNDER_WAY_S = 0.15
 
 
 class Process:
@@ -32,9 +33,10 @@ class Process:
         self._process = psutil.Process(popen.pid)
 
     def sizes(self):
-        """Return (memory [MB], threads, descriptors)."""
-        return (self._process.memory_info().rss / 1e6, self._process.num_threads(),
-                self._process.num_fds())
+        """Return (memory [MB], threads, descriptors): of the drive, not of who stands by for it."""
+        drives = self._process.children() if self.name == 'mux' else ()
+        process = next(iter(drives), self._process)
+        return process.memory_info().rss / 1e6, process.num_threads(), process.num_fds()
 
     def lines(self):
         """Return how many lines it has written."""
@@ -50,36 +52,6 @@ class Process:
         """Fail where it has ended."""
         assert self.popen.poll() is None, '{} ended with {}:\n{}'.format(
             self.name, self.popen.returncode, self.tail())
-
-
-class RobotLog:
-    """What one robot was told, [(when, linear, angular)]."""
-
-    def __init__(self, path):
-        self.path = path
-        self._at = 0
-        self.told = []
-
-    def read(self):
-        """Return all of it."""
-        if os.path.exists(self.path):
-            with open(self.path) as stream:
-                stream.seek(self._at)
-                for line in iter(stream.readline, ''):
-                    if not line.endswith('\n'):
-                        break
-                    self._at += len(line)
-                    self.told.append(tuple(map(float, line.split())))
-        return self.told
-
-    def moves(self):
-        """Tell whether the last word was to move."""
-        told = self.read()
-        return bool(told) and any(told[-1][1:])
-
-    def after(self, since, until=float('inf')):
-        """Return what it was told in a time."""
-        return [word for word in self.read() if since <= word[0] <= until]
 
 
 class UnderFire:
@@ -99,15 +71,14 @@ class UnderFire:
         self.system.start_master()
         rospy.init_node('attacker', disable_signals=True)
         self.mux = self.start('mux', self.system.node('mux', '__name:=mux'))
-        self.gates = self.start('gates', self.system.node('gates'))
         for name in self.names:
             self.robot(name)
-        self.stick = self.speaker(os.path.join(HERE, '..', 'rostest', 'speaker_process.py'),
-                                  'joy', '/mux_in/pedal')
+        self.stick = self.speaker(os.path.join(HERE, 'speaker_process.py'),
+                                  'joy', graph.PEDAL)
         self.start('stick', self.stick)
         self.start_operator()
-        self._stop = rospy.ServiceProxy('/mux/set_stop_all', SetBool, persistent=True)
-        self._stop.wait_for_service(20.0)
+        self._stop = rospy.ServiceProxy(graph.SET_STOP_ALL, SetBool, persistent=True)
+        self._stop.wait_for_service(TIMEOUT_S)
         return self
 
     def __exit__(self, failure, *_):
@@ -133,21 +104,14 @@ class UnderFire:
         """Start one robot, known to everybody by its template."""
         import rospy
         rospy.set_param('/{}/robot_type'.format(name), 'generic')
-        path = os.path.join(self.system.home, name + '.log')
-        self.robots[name] = RobotLog(path)
+        self.robots[name] = log = RobotLog(os.path.join(self.system.home, name))
         return self.start(name, self.system.start(
-            sys.executable, os.path.join(HERE, 'logged_robot.py'), name, path,
+            sys.executable, os.path.join(HERE, 'logged_robot.py'), name, log.path + '.told',
             str(self._robot_hz), '__ns:=/' + name))
 
     def speaker(self, *command):
         """Start a program that is told things on its standard input."""
-        path = os.path.join(self.system.home, os.path.basename(command[0]) + '.out')
-        with open(path, 'ab') as output:
-            popen = subprocess.Popen(
-                (sys.executable,) + command, env=self.system.env, stdin=subprocess.PIPE,
-                stdout=output, stderr=subprocess.STDOUT, text=True, bufsize=1)
-        popen.log = path
-        return popen
+        return self.system.start(sys.executable, *command, stdin=subprocess.PIPE)
 
     def start_operator(self):
         """Start the panel's backend: the operator."""
@@ -164,46 +128,57 @@ class UnderFire:
         master = rosgraph.Master('/under_fire')
         # Until then its connections are still being made, which is no growth.
         wait_for(lambda: all('/onlooker' in dict(master.getSystemState()[1]).get(topic, ())
-                             for topic in ('/mux/dead_man', '/{}/odom'.format(self.names[-1]))),
+                             for topic in (graph.DRIVE_STATE, '/{}/odom'.format(self.names[-1]))),
                  60, 'the second screen', poll_s=0.2)
 
     def order(self, *words):
         """Tell the operator's backend to do something."""
-        self.operator.stdin.write(' '.join(words) + '\n')
+        tell(self.operator, ' '.join(words))
 
     def hold(self, forward):
         """Hold the stick so far ahead from now on."""
-        self.stick.stdin.write('{} 0 0.0 {!r}\n'.format(self._stick_hz, forward))
+        tell(self.stick, '{} 0 0.0 {!r}'.format(self._stick_hz, forward))
 
-    def moving(self):
-        """Tell whether all robots were told to move."""
-        return all(log.moves() for log in self.robots.values())
+    def moving(self, *names):
+        """Return whether these robots, by default all, were told to move."""
+        return all(self.robots[name].moves() for name in names or self.robots)
 
-    def drive(self, timeout_s=15.0):
-        """Drive all robots, as an operator would who wants to: centre, push, and again.
+    def stands(self):
+        """Wait until every robot was told to stand; return when."""
+        wait_for(lambda: not any(log.moves() for log in self.robots.values()),
+                 what='every robot to be told to stand')
+        return time.monotonic()
 
-        The operator asks for stick and speed limit anew, and from the second time on for control.
+    def wait_loaded(self):
+        """Wait until the backend has loaded what robots need: that is no growth."""
+        wait_for(lambda: 'loaded' in self.backend.tail(), what='the backend to be loaded')
+
+    def drive(self, *names, by_panel=True):
+        """Drive these robots, by default all, as who wants to: centre, push, and again.
+
+        :param by_panel: the panel asks for stick and speed limit anew, and at times for control
         """
-        deadline = time.monotonic() + timeout_s
-        tries = 0
-        while not self.moving():
-            assert time.monotonic() < deadline, 'cannot be driven: {}'.format(
-                {name: log.told[-2:] for name, log in self.robots.items()})
-            tries += 1
-            if tries % 3 == 0:
-                self.order('take')
-            self.order('select', *self.names)
-            self.order('mode', 'pedal')
-            self.order('limits', '0.5', '1.5')
+        tries = itertools.count(1)
+
+        def moves():
+            if by_panel:
+                if next(tries) % 3 == 0:
+                    self.order('take')
+                self.order('select', *self.names)
+                self.order('mode', 'pedal')
+                self.order('limits', '0.5', '1.5')
             self.hold(0.0)
-            time.sleep(0.15)
+            time.sleep(0.2)
             self.call_stop(False)
             time.sleep(0.2)
             self.hold(0.5)
-            until = time.monotonic() + 0.8
-            while time.monotonic() < until and not self.moving():
+            until = time.monotonic() + 1.0
+            while time.monotonic() < until and not self.moving(*names):
                 time.sleep(0.01)
-        return tries
+            return self.moving(*names)
+        if not self.moving(*names):
+            wait_for(moves, what=lambda: 'all to move: {}'.format(
+                {name: log.rows()[-2:] for name, log in self.robots.items()}))
 
     def call_stop(self, stopped):
         """Engage or release STOP ALL; return the mux's answer."""
@@ -214,29 +189,27 @@ class UnderFire:
             # The connection was closed; a new one at once.
             self._stop.close()
             from std_srvs.srv import SetBool
-            self._stop = rospy.ServiceProxy('/mux/set_stop_all', SetBool, persistent=True)
+            self._stop = rospy.ServiceProxy(graph.SET_STOP_ALL, SetBool, persistent=True)
             print('stop-all called again: {}'.format(error))
             return self._stop(stopped)
 
     def stop_all(self):
-        """Press STOP ALL while everything drives; return until the last robot's first zero [s].
+        """Press STOP ALL while everything drives; hold it to its time."""
+        self.drive()
+        since = time.monotonic()
+        self.call_stop(True)
+        self.stops.append(self.zeros(since, 'stop-all: last first zero'))
+        self.stopped_at = since + self.stops[-1]
 
-        Twice at most: a zero that is late once may be the machine's, twice is not.
-        """
-        for _ in range(2):
-            self.drive()
-            since = time.monotonic()
-            self.call_stop(True)
-            wait_for(lambda: not any(log.moves() for log in self.robots.values()), 2.0,
-                     'every robot to be told to stand')
-            # The first zero behind which nothing but zeros comes.
-            took = max(next(word[0] for word in log.after(since) if not any(word[1:]))
-                       for log in self.robots.values()) - since
-            self.stops.append(took)
-            self.stopped_at = since + took
-            if took <= STOP_S:
-                break
-        return took
+    def zeros(self, since, what):
+        """Wait until every robot has a zero; return how long after a time the last one had it."""
+        from support.rostest_tools import measured
+
+        def found():
+            return [next((word[0] for word in log.after(since) if not any(word[1:])), None)
+                    for log in self.robots.values()]
+        wait_for(lambda: None not in found(), what='every robot to be told to stand')
+        return measured(what, max(found()) - since, STOP_S)
 
     def check_stands(self, since):
         """Fail where a robot was told to move after a time (and all that was under way)."""
@@ -247,7 +220,7 @@ class UnderFire:
     def check_straight(self):
         """Fail where a robot was ever told what this stick cannot have asked for."""
         for name, log in self.robots.items():
-            odd = [word for word in log.read()
+            odd = [word for word in log.rows()
                    if word[2] != 0.0 or not 0.0 <= word[1] <= FASTEST_MPS]
             assert not odd, '{} was told {}'.format(name, odd[:3])
 
@@ -259,7 +232,7 @@ class UnderFire:
     def sizes(self):
         """Return {name: (memory [MB], threads, descriptors)} of those under attack."""
         return {process.name: process.sizes() for process in self.processes
-                if process.name in ('mux', 'gates', 'backend', 'screen')}
+                if process.name in ('mux', 'backend', 'screen')}
 
     def lines(self):
         """Return {name: lines written}."""

@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """The receiving end of a velocity topic: what a robot is sent, and when."""
+import math
 import time
 
 from geometry_msgs.msg import Twist
@@ -21,8 +22,20 @@ class VelocityEnd:
     def connected(self):
         return self.subscriber.get_num_connections() > 0
 
+    def moves(self):
+        """Return whether the last word was to move."""
+        return any(any(entry[1:]) for entry in self.received[-1:])
+
     def after(self, when):
         return [entry for entry in list(self.received) if entry[0] >= when]
+
+    def is_silent(self, seconds=0.5):
+        """Return whether nothing was heard for so long [s], but something before that."""
+        return bool(self.received) and time.monotonic() - self.received[-1][0] > seconds
+
+    def last(self):
+        """Return the last command, NaN before the first."""
+        return self.received[-1][1:] if self.received else (math.nan, math.nan)
 
     def values(self):
         return [entry[1:] for entry in list(self.received)]

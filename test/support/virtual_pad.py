@@ -21,7 +21,7 @@ import time
 SDL_INIT_JOYSTICK = 0x200
 GAME_CONTROLLER = 1
 FULL = 32767
-PATIENCE_S = 30.0
+TIMEOUT_S = 30.0
 GO_ON = threading.Event()
 
 
@@ -72,8 +72,6 @@ class Pads:
         self._pads = {}
         self._kept = []
         self._rumbles = []
-        self._moved = set()
-        self._lock = threading.Lock()
 
     def attach(self, name, axes=6, buttons=17, hats=0, vendor=0, product=0):
         """Plug a pad in; return its number."""
@@ -101,14 +99,12 @@ class Pads:
     def set(self, number, axes=None, buttons=None, hats=None):
         """Move axes {index: -1.0 to 1.0}, buttons {index: 0 or 1}, hats {index: bits}."""
         pad = self._pads[number]
-        with self._lock:
-            self._moved.update(int(index) for index in axes or {})
-            for index, value in (axes or {}).items():
-                self._sdl.SDL_JoystickSetVirtualAxis(pad, int(index), int(round(value * FULL)))
-            for index, value in (buttons or {}).items():
-                self._sdl.SDL_JoystickSetVirtualButton(pad, int(index), value)
-            for index, value in (hats or {}).items():
-                self._sdl.SDL_JoystickSetVirtualHat(pad, int(index), value)
+        for index, value in (axes or {}).items():
+            self._sdl.SDL_JoystickSetVirtualAxis(pad, int(index), int(round(value * FULL)))
+        for index, value in (buttons or {}).items():
+            self._sdl.SDL_JoystickSetVirtualButton(pad, int(index), value)
+        for index, value in (hats or {}).items():
+            self._sdl.SDL_JoystickSetVirtualHat(pad, int(index), value)
 
     def swing(self, number, axis, value):
         """Push an axis and let it go, as slowly as it takes to be seen."""
@@ -137,38 +133,10 @@ class Pads:
         self._sdl.SDL_JoystickClose(pad)
         return at
 
-    def storm(self, number, axis, seconds, rate_hz=1000.0):
-        """Move an axis without pause; return how often it was moved and where it ended."""
-        end, count, value = time.monotonic() + seconds, 0, 0.0
-        due = time.monotonic()
-        while time.monotonic() < end:
-            count += 1
-            value = ((count * 7919) % 2000 - 1000) / 1000.0
-            self.set(number, {axis: value})
-            due += 1.0 / rate_hz
-            time.sleep(max(0.0, due - time.monotonic()))
-        return count, value
-
     def shown_in(self, folder):
         """Let the kernel's list of input devices be a folder (:mod:`support.kernel_pads`)."""
         from mhri.devices.io import event_nodes
         event_nodes.SYS_INPUT = folder
-
-    def hush(self):
-        """Be a driver that is silent about an axis until it is moved, with an SDL that cannot say.
-
-        Call it before SDL is used at all.
-        """
-        from mhri.devices.io import sdl
-        import pygame
-        self._sdl = _load()
-        sdl.load_library = lambda: None
-        get = pygame.event.get
-
-        def get_of_moved():
-            return [event for event in get()
-                    if event.type != pygame.JOYAXISMOTION or event.axis in self._moved]
-        pygame.event.get = get_of_moved
 
 
 def serve(path):
@@ -206,7 +174,7 @@ class PadClient:
         self._said = said
         self._socket = socket.socket(socket.AF_UNIX)
         self.done_at = None
-        deadline = time.monotonic() + PATIENCE_S
+        deadline = time.monotonic() + TIMEOUT_S
         while True:
             try:
                 self._socket.connect(path)
@@ -294,7 +262,7 @@ def main():
     sys.argv[:] = [module] + sys.argv[3:]
     threading.Thread(target=serve, args=(path,), daemon=True).start()
     if os.environ.pop('MHRI_PAUSED', ''):
-        GO_ON.wait(PATIENCE_S)
+        GO_ON.wait(TIMEOUT_S)
     importlib.import_module(module).main()
 
 

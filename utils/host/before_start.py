@@ -23,14 +23,13 @@ import xml.etree.ElementTree as ElementTree
 import xmlrpc.client
 
 CALLER = '/mhri_run'
-PATIENCE_S = 3.0
+TIMEOUT_S = 3.0
 # A node that serves or publishes all of these is one. What it publishes tells it from a node that
 # has taken its port.
 MUX_SERVICE, MUX_TOPIC = '/mux/set_stop_all', '/robot_controller/twist'
 PANEL_TOPICS = ('/mux_in/mode_select', '/robot_controller/robot_select')
 CHOICES = {'gui': ('auto', 'rqt', 'standalone', 'none')}
-INPUTS = ('joy', 'pedal', 'voice', 'none')
-MOST_ROBOTS = 12
+MAX_ROBOTS = 12
 ROBOT = re.compile(r'[A-Za-z0-9_/]+\Z')
 # The launch file quotes these, and a quote in them could add options.
 QUOTED = ('screenshot', 'demo_result', 'links')
@@ -64,7 +63,7 @@ def candidates(state):
 
 
 def is_here(host):
-    """Tell whether a host is this computer."""
+    """Return whether a host is this computer."""
     try:
         with socket.socket() as sock:
             sock.bind((host, 0))
@@ -97,7 +96,7 @@ def running(uri):
             pass
 
     threads = [threading.Thread(target=ask, args=item, daemon=True) for item in known.items()]
-    deadline = time.monotonic() + PATIENCE_S
+    deadline = time.monotonic() + TIMEOUT_S
     for thread in threads:
         thread.start()
     for thread in threads:
@@ -109,7 +108,7 @@ def running(uri):
 
 
 def reaches(address):
-    """Tell whether this computer reaches itself at an address (e.g. behind a router's NAT)."""
+    """Return whether this computer reaches itself at an address (e.g. behind a router's NAT)."""
     token = uuid.uuid4().bytes
     with socket.create_server(('', 0)) as server:
         try:
@@ -154,7 +153,7 @@ def one_of(words):
 
 
 def wrong_value(name, value, default, resource, mux_config):
-    """Return what is wrong with the value of an argument, or None."""
+    """Return the problem of an argument's value, or None."""
     allowed, given = CHOICES.get(name), [value]
     if name == 'robots':
         odd = [word for word in value.split() if not ROBOT.match(word)]
@@ -164,9 +163,10 @@ def wrong_value(name, value, default, resource, mux_config):
     if default in ('true', 'false'):
         allowed = ('true', 'false')
     elif name == 'inputs':
-        allowed, given = INPUTS, value.split()
+        rows = read_yaml(os.path.join(resource, 'inputs.yaml'))
+        allowed, given = rows and list(rows) + ['none'], value.split()
     elif name == 'sim':
-        allowed = [str(number) for number in range(MOST_ROBOTS + 1)]
+        allowed = [str(number) for number in range(MAX_ROBOTS + 1)]
     elif name == 'enabling' and value:
         allowed = source_names(mux_config)
     elif name == 'sim_types':
@@ -180,7 +180,7 @@ def wrong_value(name, value, default, resource, mux_config):
 
 
 def wrong_argument(path, words):
-    """Return what is wrong with the first wrong one of ARG:=VALUE, or None.
+    """Return the problem of the first invalid ARG:=VALUE, or None.
 
     :param path: of the launch file; the files it reads are in ``resource`` beside its folder
     """
@@ -203,7 +203,7 @@ def wrong_argument(path, words):
 
 def main(what, *args):
     """Answer one question on the standard output."""
-    socket.setdefaulttimeout(PATIENCE_S)
+    socket.setdefaulttimeout(TIMEOUT_S)
     if what == 'arguments':
         answer = wrong_argument(args[0], args[1:])
     elif what == 'reaches':

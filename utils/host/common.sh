@@ -22,7 +22,7 @@ LIBRARY=
 
 DEBIAN_RUN=(
   catkin cmake g++ make python3-catkin-pkg ros-message-generation ros-message-runtime
-  python3-roslaunch python3-rosgraph python3-rospkg python3-rospy
+  python3-setuptools python3-roslaunch python3-rosgraph python3-rospkg python3-rospy
   python3-rosbag python3-rosnode python3-rosparam python3-rosservice python3-rostopic rosbash
   ros-std-msgs ros-geometry-msgs ros-actionlib-msgs libactionlib-msgs-dev python3-actionlib
   python3-actionlib-msgs python3-std-msgs python3-geometry-msgs python3-sensor-msgs python3-nav-msgs python3-std-srvs
@@ -31,19 +31,21 @@ DEBIAN_RUN=(
   python3-cv-bridge python3-python-qt-binding python3-pyqt5 python3-pyqtgraph python3-pygame
   python3-evdev python3-pocketsphinx pocketsphinx-en-us python3-pyaudio
   python3-numpy python3-opencv python3-yaml python3-genpy python3-netifaces python3-cryptography
+  python3-aiohttp python3-qrcode
   fonts-dejavu-core
   libturbojpeg0 openssh-client openssl
   xvfb xauth hostname util-linux
 )
 DEBIAN_TEST=(
   librostest-dev python3-rostest python3-roslib topic-tools python3-pytest python3-flake8
-  python3-flake8-docstrings python3-mccabe python3-pip python3-psutil catkin-lint shellcheck
+  python3-flake8-docstrings python3-pip python3-psutil python3-rosdep2 catkin-lint shellcheck mkdocs
   xdotool imagemagick x11-utils git procps espeak-ng sox ffmpeg openssh-server iproute2 nftables
+  chromium chromium-driver python3-selenium
 )
 # Only for the fast group of tests; Ubuntu uses the same names.
 FAST=(
-  python3-catkin-pkg python3-evdev python3-flake8 python3-mccabe python3-numpy python3-opencv
-  python3-pip python3-pyaudio python3-pytest python3-rospkg python3-yaml util-linux
+  python3-catkin-pkg python3-evdev python3-flake8 python3-numpy python3-opencv
+  python3-pip python3-pytest python3-rospkg python3-yaml util-linux
 )
 # On Ubuntu rosdep reads the ROS packages from package.xml; these have no key there.
 UBUNTU_RUN=(
@@ -51,9 +53,9 @@ UBUNTU_RUN=(
   openssh-client
 )
 UBUNTU_TEST=(
-  python3-pytest python3-flake8 python3-mccabe python3-pip python3-psutil python3-catkin-lint
-  shellcheck xdotool imagemagick x11-utils git procps espeak-ng sox ffmpeg openssh-server iproute2
-  nftables
+  python3-pytest python3-flake8 python3-pip python3-psutil python3-catkin-lint
+  shellcheck mkdocs xdotool imagemagick x11-utils git procps espeak-ng sox ffmpeg openssh-server
+  iproute2 nftables
 )
 
 say() { printf 'mhri: %s\n' "$(unarmed "$*")"; }
@@ -62,19 +64,21 @@ die() { warn "$*"; exit 1; }
 # A wrong command line: exit status 2, before anything starts.
 usage_error() { warn "$(brief "$*") (--help lists every option)"; exit 2; }
 
-# Prints debian or ubuntu, or dies with a list of what is supported.
+# Prints whose names of packages this system has, debian or ubuntu, or dies with a list of the supported systems.
 os_family() {
   local system
   # shellcheck disable=SC1090 # known at run time only
   system=$(. "$OS_RELEASE" 2>/dev/null && printf '%s' "${ID:-} ${VERSION_ID:-}") || system=
   case "$system" in
     "debian 12") echo debian ;;
+    # Its own ROS packages are Debian's.
+    "ubuntu 22.04") echo debian ;;
     "ubuntu 20.04")
       [ -f "$NOETIC/setup.bash" ] || die "Ubuntu 20.04 without ROS Noetic: install" \
         "ros-noetic-ros-base first (http://wiki.ros.org/noetic/Installation/Ubuntu)"
       echo ubuntu ;;
     *) die "this system (${system:-unknown}) is not supported: mhri runs on Debian 12 and" \
-         "on Ubuntu 20.04 with ROS Noetic" ;;
+         "on Ubuntu 20.04 with ROS Noetic. Elsewhere utils/host/mhri_docker.sh runs it in Docker" ;;
   esac
 }
 
@@ -97,7 +101,7 @@ as_root() {
   sudo "$@"
 }
 
-# install_packages NAME...: installs what is missing; with nothing missing, it uses neither apt nor
+# install_packages NAME...: installs missing packages; with none missing, it uses neither apt nor
 # sudo nor the network.
 install_packages() {
   local missing
@@ -108,7 +112,7 @@ install_packages() {
     warn "could not update the package lists; going on with the present ones"
   as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends \
     "${missing[@]}" ||
-    die "apt could not install what is missing (${missing[*]}): see its message above"
+    die "apt could not install the missing packages (${missing[*]}): see its message above"
 }
 
 # install_rosdeps: on Ubuntu, installs what package.xml asks for.
@@ -190,13 +194,13 @@ needs_plain_path() {
 
 # is_built TESTING TARGET: true if such a build would find nothing to do.
 is_built() {
-  [ -z "$2" ] && [ "$1" = OFF ] && [ ! -e "$WS/src" ] && nothing_changed "$WS/built"
+  [ -z "$2" ] && [ "$1" = OFF ] && nothing_changed "$WS/built"
 }
 
 # build_workspace TESTING [MAKE_TARGET]: builds this checkout in its own workspace; TESTING is ON or
 # OFF. The workspace is in build, which rosrun skips when it searches a package, and hidden, which
 # roslaunch skips: either would find every file of the package twice. The checkout itself is its
-# source folder: a link to it in there would be a loop for whoever searches the package. What runs
+# source folder: a link to it in there would be a loop for any search of the package. What runs
 # from here is Python; messages for other languages take half of the build.
 build_workspace() {
   local testing=$1 target=${2:-} stamp="$WS/built" log="$WS/build.log"
@@ -206,7 +210,7 @@ build_workspace() {
   mkdir -p "$WS" 2>/dev/null ||
     die "cannot write to $REPO: the workspace is built there, in build/.ws"
   if ! (: >>"$WS/lock") 2>/dev/null; then
-    # Somebody else's, or on a disk that cannot be written: what is built there runs.
+    # Another user's, or on a read-only disk: an existing build runs.
     ! is_built "$testing" "$target" || return 0
     die "cannot write to $WS, where the checkout has to be built (again, if it was): make it" \
       "writable, or copy the checkout"
@@ -219,10 +223,9 @@ build_workspace() {
   fi
   # Stamped with the time of the start: files saved during the build are built next time.
   printf '%s' "$REPO" >"$stamp.new"
-  # CMake refuses a build folder made for another place (a copied or moved checkout), or through a
-  # link in src, as older versions had.
-  if [ -e "$WS/src" ] || { [ -f "$WS/place" ] && [ "$(cat "$WS/place")" != "$REPO" ]; }; then
-    rm -rf "$WS/src" "$WS/build" "$WS/devel" "$WS/install" "$stamp"
+  # CMake refuses a build folder made for another place: a copied or moved checkout.
+  if [ -f "$WS/place" ] && [ "$(cat "$WS/place")" != "$REPO" ]; then
+    rm -rf "$WS/build" "$WS/devel" "$WS/install" "$stamp"
   fi
   printf '%s' "$REPO" >"$WS/place"
   # A workspace set up for the tests stays so: a start in the middle of a test run must not remove
@@ -283,7 +286,7 @@ socket.socket(socket.AF_UNIX).connect("/tmp/.X11-unix/X" + sys.argv[1])' "${DISP
 }
 
 # end_leftovers: ends what this run started and left running, known by its mark; prints each. Looks
-# again until nothing is left: what is ended may have started more in the meantime.
+# again until nothing is left: a process may have started others before it ended.
 end_leftovers() {
   local entry pid found=true
   while $found; do

@@ -38,7 +38,7 @@ the robot's password unless ssh has a key for it.
                        with turtle_remote.sh, and give mhri_run.sh --link here
   --listen ENDPOINT    with --link: where the robot is called (default 0.0.0.0:7447)
   --router ENDPOINT    with --link: robot and host call this router instead, e.g. 192.0.2.1:7447
-  --keys off           with --link: both sides go without keys: whoever reaches the link may drive.
+  --keys off           with --link: both sides go without keys: anyone who reaches it may drive.
                        Else both use the keys in place (mhri_keys.sh), and a robot without one does
                        not start
   --keep-mb MB         with --link: of what this computer misses the robot keeps so much (500)

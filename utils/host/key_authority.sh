@@ -8,7 +8,7 @@
 # A key is called for so many days before its end.
 SOON_DAYS=30
 
-# key_names: prints the names of those who have a key, one per line.
+# key_names: prints the names that have a key, one per line.
 key_names() {
   local path
   for path in "$AUTHORITY"/keys/*/; do
@@ -24,12 +24,12 @@ run_openssl() {
     die "openssl could not $what: $(tail -n 2 "$SCRATCH/openssl.log" | tr '\n' ' ')"
 }
 
-# open_authority: dies unless there is one that nobody else can read; waits for another run's end.
+# open_authority: dies unless there is one that only its owner can read; waits for another run's end.
 open_authority() {
   [ -e "$AUTHORITY/authority.pem" ] ||
     die "there is no authority in $AUTHORITY: make it with 'mhri_keys.sh new'"
   private "$AUTHORITY"
-  [ -O "$AUTHORITY" ] || die "$AUTHORITY is somebody else's: run this as its owner"
+  [ -O "$AUTHORITY" ] || die "$AUTHORITY belongs to another user: run this as its owner"
   exec {LOCK}>"$AUTHORITY/lock"
   flock "$LOCK"
   rm -rf "$AUTHORITY/.making"
@@ -38,7 +38,7 @@ open_authority() {
 # private FOLDER: dies if others may look into it.
 private() {
   [[ $(stat -c %a "$1") == *00 ]] || die "others may look into $1: run 'chmod 700 $1', and make" \
-    "new keys if somebody may have done so"
+    "new keys if anybody may have done so"
 }
 
 # moment WHEN: a time as openssl ca takes it.
@@ -132,7 +132,7 @@ last_day() {
   date -d "${text#notAfter=}" "+${2:-%F}"
 }
 
-# problem FOLDER LISTS: prints what is wrong with the key in FOLDER; nothing if it is good. LISTS has
+# problem FOLDER LISTS: prints the problem of the key in FOLDER; nothing if it is good. LISTS has
 # the authority's certificate and the list of those withdrawn.
 problem() {
   local file said

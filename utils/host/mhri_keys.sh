@@ -56,10 +56,10 @@ CONFIG=${XDG_CONFIG_HOME:-${HOME:-/root}/.config}/mhri
 AUTHORITY=$CONFIG/authority
 PLACE=$CONFIG/keys
 AUTHORITY_DAYS=3650
-# What a key's owner needs beside own.key and own.pem: withdrawn.pem is the list withdrawn, signed.
+# The files that a key's owner needs beside own.key and own.pem: withdrawn.pem is the list withdrawn, signed.
 COMMON=(authority.pem peers withdrawn withdrawn.pem)
 FILES=(own.key own.pem "${COMMON[@]}")
-# A clock that is farther off than this is told of [s].
+# A clock with a larger error than this is reported [s].
 CLOCK_S=300
 
 COMMAND=
@@ -141,7 +141,7 @@ check_arguments() {
   if [ -n "$DAYS" ]; then
     goes_with --days host robot router renew
     [[ $DAYS =~ ^[1-9][0-9]{0,3}$ && $DAYS -le 3650 ]] ||
-      usage_error "--days: '$DAYS' is no whole number from 1 to 3650"
+      usage_error "--days: '$DAYS' is not a whole number from 1 to 3650"
   fi
   [ -z "$SSH_PORT" ] || goes_with --ssh-port put
   [ -z "$FOLDER" ] || goes_with --to put
@@ -177,12 +177,12 @@ new_authority() {
     -enddate "$(moment "now + $AUTHORITY_DAYS days")" -out authority.new
   write_lists
   mv "$AUTHORITY/authority.new" "$AUTHORITY/authority.pem"
-  say "the authority is in $AUTHORITY, good for ten years. Whoever has authority.key can make keys:" \
-    "keep a copy in a safe place, and give it to nobody"
+  say "the authority is in $AUTHORITY, good for ten years. Anybody with authority.key can make keys:" \
+    "keep a copy in a safe place, and share it with nobody"
   say "next: 'mhri_keys.sh host NAME' makes a key for this computer"
 }
 
-# first_key ROLE: for somebody who has none.
+# first_key ROLE: makes the first key of a name.
 first_key() {
   local role=$1 address names="DNS:$NAME"
   [ ! -e "$AUTHORITY/keys/$NAME" ] ||
@@ -294,7 +294,7 @@ put_here() {
   mkdir -p "$PLACE" || die "cannot write to $PLACE"
   chmod 700 "$PLACE"
   for file in "${FILES[@]}"; do
-    # As a whole or not at all, should somebody be reading it.
+    # Atomically: it may be read at this moment.
     { cp "$SCRATCH/put/$file" "$PLACE/.$file.new" && mv "$PLACE/.$file.new" "$PLACE/$file"; } ||
       die "cannot write to $PLACE: is the disk full?"
   done
@@ -332,7 +332,7 @@ main() {
   parse_arguments "$@"
   check_arguments
   command -v openssl >/dev/null || die "there is no openssl here: install the package openssl"
-  # What is written here is for its owner alone.
+  # Only the owner may read the files written here.
   umask 077
   make_scratch
   trap disconnect EXIT

@@ -10,9 +10,9 @@ help_text() {
   cat <<'HELP'
 Usage: mhri_run.sh [OPTION]... [ARG:=VALUE]...
 
-Starts the human-robot interface on this computer: the mux, the gates and the screen, in rqt if that
-is installed. First installs what is missing and builds; if nothing is missing or has changed, it
-does neither and needs no network. Press Ctrl-C, or close the screen, to end everything.
+Starts the human-robot interface on this computer: the mux and the screen, in rqt if that is
+installed. First installs what is missing and builds; if nothing is missing or has changed, it does
+neither and needs no network. Press Ctrl-C, or close the screen, to end everything.
 
 Robots
   --sim N [TYPES]      add N simulated robots (1 to 12). TYPES lists their types in turn, e.g.
@@ -38,17 +38,20 @@ Robots
   --link "NAME=ADDR..."  robots that have a ROS master of their own, e.g.
                        --link "bot1=192.168.0.7 bot2=192.168.0.8": their addresses, where mhri_link
                        runs as the operator's guide says ("Robots on a bad radio"). ADDR may also be
-                       an endpoint such as udp/192.168.0.7:7447. Installs the library for it, zenoh,
+                       an endpoint such as tls/192.168.0.7:7447. Installs the library for it, zenoh,
                        below build/.ws. Where mhri_keys.sh has put a key in place on this computer,
-                       the link is by keys (TLS) alone; a robot without one listens to nobody
-                       unless it is started with --keys off.
-  --keys FOLDER        with --link: the keys are in FOLDER; off: link without keys
+                       the link is by keys (TLS) alone; without one nothing is linked, unless
+                       --keys off is given here and to the robot.
+  --keys FOLDER        with --link: the keys are in FOLDER; off: link without keys, on a network that
+                       you trust
   --router ENDPOINT    a router, such as 192.0.2.1:7447, behind which those robots of --link are
                        that it gives no address for: --link "bot1 bot2=192.168.0.8"
 
   --keep WHAT          what the robots of --link record for later while they are out of reach: session
                        (all but pictures, while a session is recorded; the default), states (the
                        same, always), or pictures (always, and the cameras, too)
+
+  --web                serve a page for phones, tablets and headsets; the screen gives out links to it
 
   --replay PATH        show a session again: the folder of one that was recorded, a folder of bags,
                        or a bag of any program whose topics are those of a robot type. Uses a master
@@ -67,13 +70,19 @@ Network
   ROS_MASTER_URI, ROS_IP and ROS_HOSTNAME are set from these; values from your shell are not used.
 
 Other
+  --fresh              begin without the saved settings of the screen, except for the numbers of
+                       robots; the settings stay as they are until you change robots or mode.
+                       Simulated robots and drills have settings of their own anyway, which keep
+                       nothing about robots
   --install-space      build and run from the install space instead of the devel space
   ARG:=VALUE           an argument of launch/mhri.launch, e.g. gui:=none or robots:="bot1 bot2"
   -h, --help           this text
 
 Without a display (DISPLAY and WAYLAND_DISPLAY not set) the screen runs under Xvfb, 1920x1080.
 
-Works on Debian 12, and on Ubuntu 20.04 with ROS Noetic. It uses sudo only if packages are missing.
+Works on Debian 12, and on Ubuntu 20.04 with ROS Noetic; prepared for Ubuntu 22.04 with its own ROS
+packages, but not tried there. Elsewhere mhri_docker.sh runs it in Docker. It uses sudo only if packages
+are missing.
 The workspace is build/.ws in the checkout; if you delete it, the next start takes a minute longer.
 
 Exit status: 0 the screen was closed, 1 could not start, or the screen or the demo failed,
@@ -101,6 +110,7 @@ DEMO=false
 REPLAY=
 DRILL=
 SCRIPTED=false
+FRESH=false
 PICTURE=
 SPACE=devel
 LAUNCH_ARGS=()
@@ -127,6 +137,8 @@ parse_arguments() {
       --replay) REPLAY=$(value "$@"); shift ;;
       --drill) DRILL=$(value "$@"); shift ;;
       --scripted) SCRIPTED=true ;;
+      --fresh) FRESH=true ;;
+      --web) LAUNCH_ARGS+=("web:=true") ;;
       --install-space) SPACE=install ;;
       -*) usage_error "there is no option $1" ;;
       *:=*) LAUNCH_ARGS+=("$1") ;;
@@ -175,9 +187,9 @@ check_arguments() {
 # check_replay: a replay has a master of its own, and nothing beside it.
 check_replay() {
   [ -n "$REPLAY" ] || return 0
-  if [ -n "$IP$MASTER$SIM$PICTURE$DRILL${LINKS[*]}" ] || "$DEMO"; then
+  if [ -n "$IP$MASTER$SIM$PICTURE$DRILL${LINKS[*]}" ] || "$DEMO" || "$FRESH"; then
     usage_error "--replay runs on this machine alone, with its own master and without robots:" \
-      "leave out --ip, --master, --sim, --link, --demo, --drill and --screenshot"
+      "leave out --ip, --master, --sim, --link, --demo, --drill, --fresh and --screenshot"
   fi
   [ -e "$REPLAY" ] || usage_error "--replay: there is no $REPLAY"
   [[ $REPLAY != *[\'\"\$]* ]] ||
@@ -214,6 +226,15 @@ choose_drill() {
   if "$SCRIPTED"; then LAUNCH_ARGS+=("drill_args:=--scripted" gui:=none inputs:=none); fi
 }
 
+# name_simulated: lists the robots of --sim at once: the settings of simulated runs keep none.
+name_simulated() {
+  if [ -n "$SIM" ] && [ -z "$DRILL" ] && ! "$DEMO" &&
+    [[ " ${LAUNCH_ARGS[*]}" != *" robots:="* && " ${LAUNCH_ARGS[*]}" != *" sim_prefix:="* ]]; then
+    LAUNCH_ARGS=("robots:=$(seq -s ' ' -f 'bot%g' "$SIM")" "${LAUNCH_ARGS[@]}")
+  fi
+  ! "$FRESH" || LAUNCH_ARGS+=("fresh:=true")
+}
+
 # check_links: makes an endpoint of each bare address in LINKS.
 check_links() {
   local index link
@@ -225,7 +246,8 @@ check_links() {
     if [ -n "$ROUTER" ] && [[ $link =~ ^[A-Za-z][A-Za-z0-9_]*$ ]]; then continue; fi
     # Without a protocol mhri_link takes tls/ where keys are in place, else tcp/.
     [[ $link == *=*:* ]] || link=$link:7447
-    [[ $link =~ ^[A-Za-z][A-Za-z0-9_]*=((tcp|udp|tls|quic)/)?[A-Za-z0-9.-]+:[0-9]{1,5}$ ]] ||
+    [[ $link != *=*/* ]] || check_endpoint --link "${link#*=}"
+    [[ $link =~ ^[A-Za-z][A-Za-z0-9_]*=((tcp|tls)/)?[A-Za-z0-9.-]+:[0-9]{1,5}$ ]] ||
       usage_error "--link: '${LINKS[index]}' is not NAME=ADDRESS such as bot1=192.168.0.7"
     LINKS[index]=$link
   done
@@ -270,7 +292,7 @@ own_addresses() {
   done
 }
 
-# check_own_address: given somebody else's address, roslaunch would only say after the build that it
+# check_own_address: given the address of another computer, roslaunch would only say after the build that it
 # cannot contact its own server. An address that a router forwards to this computer is right,
 # though.
 check_own_address() {
@@ -304,11 +326,18 @@ choose_address() {
     "choose another with --ip ADDR"
 }
 
+# free_port: prints one that the kernel gives to nobody who asks for any (32768 and above), as each
+# node does: one of them could have it before the master.
 free_port() {
-  python3 -I -c 'import socket
-with socket.socket() as sock:
-    sock.bind(("127.0.0.1", 0))
-    print(sock.getsockname()[1])'
+  python3 -I -c 'import random, socket
+while True:
+    with socket.socket() as sock:
+        try:
+            sock.bind(("", random.randrange(12000, 32768)))
+        except OSError:
+            continue
+        print(sock.getsockname()[1])
+        break'
 }
 
 # A second mux would take the robots from the first, and leave its panel with nothing.
@@ -328,10 +357,10 @@ check_master() {
     master)
       check_alone
       say "a ROS master runs at $MASTER: joining it" ;;
-    other) die "something other than a ROS master uses $MASTER: see there what it is with $who," \
+    other) die "something other than a ROS master uses $MASTER: find it there with $who," \
       "or choose another port with --master http://$IP:11312" ;;
     silent) die "$MASTER takes the connection but does not answer within 3 s: a ROS master that is" \
-      "overloaded or hangs, or something else. Robots may depend on it: see what it is, there," \
+      "overloaded or hangs, or something else. Robots may depend on it: find it there," \
       "with $who and top, and try again; or choose another port with --master http://$IP:11312" ;;
     nothing)
       # roslaunch starts a master only on its own machine.
@@ -379,7 +408,8 @@ prepare_display() {
 # mux and the panel send their zeros, and kills those that do not end. SIGTERM, since a shell starts
 # background jobs with SIGINT ignored.
 stop() {
-  if [ -n "$STOPPED_WITH" ]; then return; fi
+  # bash takes a second signal for part of a $(...) that it is reading, and ends without passing on any.
+  trap '' INT TERM HUP
   STOPPED_WITH=$1
   say "ending"
   if [ -z "$LAUNCH_PID" ]; then exit "$1"; fi
@@ -439,6 +469,7 @@ main() {
   trap 'stop 143' TERM HUP
   prepare_code
   choose_drill
+  name_simulated
   # Again, for a machine that had no Python or no YAML before.
   check_launch_arguments
   choose_network

@@ -38,7 +38,7 @@ SOURCE="$REPO/utils/remote"
 # this computer, where launch/mhri.launch has that name.
 LINK=mhri.launch
 LINK_TO=mhri_turtlebot2.launch
-# What --link adds, packed in the scratch folder.
+# The files that --link adds, packed in the scratch folder.
 WITH_MHRI_LINK=false
 ARCHIVE=mhri_link.tar.gz
 ROBOT_USER=
@@ -123,7 +123,7 @@ pack_link() {
   cp "$REPO/package.xml" "$folder"
   cp -r "$REPO/resource/robots" "$folder/resource"
   cp "$REPO/scripts/mhri_link" "$folder/scripts"
-  # What mhri_link imports lies in these.
+  # The modules that mhri_link imports are in these.
   (cd "$REPO/src/mhri" &&
     cp -r __init__.py base graph recording robots driving link nodes "$folder/src/mhri")
   cp -r "$messages/msg" "$messages/srv" "$folder/src/mhri"

@@ -7,7 +7,7 @@
 # unarmed TEXT: prints it without control characters, which a terminal would obey.
 unarmed() { printf '%s' "${1//[[:cntrl:]]/?}"; }
 
-# brief TEXT: prints as much of what somebody typed as fits into a line or two, in ASCII.
+# brief TEXT: prints as much of a typed text as fits into a line or two, in ASCII.
 brief() {
   local LC_ALL=C text=$1
   [ "${#text}" -le 500 ] || text="${text:0:300} ... ${text: -170}"
@@ -66,7 +66,7 @@ check_port() {
 # check_guard: BRAKE and BACK_AFTER, beside GUARD.
 check_guard() {
   [[ -z $BACK_AFTER || $BACK_AFTER =~ ^[1-9][0-9]{0,3}$ && $BACK_AFTER -le 3600 ]] ||
-    usage_error "--back-after: '$BACK_AFTER' is no whole number of seconds from 1 to 3600"
+    usage_error "--back-after: '$BACK_AFTER' is not a whole number of seconds from 1 to 3600"
   if ! "$GUARD" && { "$BRAKE" || [ -n "$BACK_AFTER" ]; }; then
     usage_error "--brake and --back-after are done by mhri_guard: leave out --no-guard"
   fi
@@ -75,8 +75,11 @@ check_guard() {
 # check_endpoint OPTION ENDPOINT: ADDRESS:PORT, with or without a protocol.
 check_endpoint() {
   local port=${2##*:}
-  if ! [[ $2 =~ ^((tcp|udp|tls|quic)/)?[A-Za-z0-9.-]+:[0-9]{1,5}$ ]] || [ "$((10#$port))" -gt 65535 ]; then
-    usage_error "$1: '$2' is not an endpoint such as 192.168.0.7:7447 or udp/192.168.0.7:7447"
+  [[ $2 != udp/* && $2 != quic/* ]] ||
+    usage_error "$1: '$2': ${2%%/*}/ is no longer a way to connect: give ${2#*/}, with keys" \
+      "(mhri_keys.sh), which drive on a bad radio, or with --keys off on a network that you trust"
+  if ! [[ $2 =~ ^((tcp|tls)/)?[A-Za-z0-9.-]+:[0-9]{1,5}$ ]] || [ "$((10#$port))" -gt 65535 ]; then
+    usage_error "$1: '$2' is not an endpoint such as 192.168.0.7:7447 or tls/192.168.0.7:7447"
   fi
 }
 
@@ -93,13 +96,13 @@ check_link_options() {
     usage_error "--keys: '$KEYS' is not off; where a key is in place (mhri_keys.sh put) it is used"
   [[ $KEEP_MB =~ ^([1-9][0-9]{1,5}|)$ ]] ||
     usage_error "--keep-mb: '$KEEP_MB' is not a number of MB from 10 to 999999"
-  [ -z "$LISTEN" ] || [ -z "$ROUTER" ] || usage_error "--router stands in place of --listen"
+  [ -z "$LISTEN" ] || [ -z "$ROUTER" ] || usage_error "--router replaces --listen"
   "$GUARD" || usage_error "a linked robot is driven through its guard alone: leave out --no-guard"
   [ -z "$IP" ] || usage_error "--ip does not go with --link, whose nodes stay on the robot: say where" \
     "the host calls with --listen"
 }
 
-# check_robot: checks what is given of TYPE, MODEL, LAUNCH, IP and PORT before anything starts or is
+# check_robot: checks TYPE, MODEL, LAUNCH, IP and PORT, as far as given, before anything starts or is
 # sent. TYPE becomes the name of a template, and PORT a plain number.
 check_robot() {
   [[ -z $TYPE || $TYPE =~ ^[a-z][a-z0-9_]{0,31}$ ]] ||

@@ -103,7 +103,7 @@ missing_package() {
     "it with --setup FILE"
 }
 
-# choose_type: by what is installed, unless --type said.
+# choose_type: the type by the installed packages, unless --type names it.
 choose_type() {
   local two=false three=false
   [ -z "$TYPE" ] || return 0
@@ -119,7 +119,7 @@ choose_type() {
       "workspace with it with --setup FILE"
   fi
   if "$two"; then TYPE=turtlebot2; else TYPE=turtlebot3; fi
-  say "this is a $TYPE, by what is installed"
+  say "this is a $TYPE, by its packages"
 }
 
 # prepare_launch: sets BASE_LAUNCH and CAMERA_LAUNCH, with their arguments.

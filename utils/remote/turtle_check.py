@@ -6,9 +6,11 @@
 turtle_check.py host HOST PORT OWN NAME     checks the master, both ways, and that NAME is free
 turtle_check.py claim HOST PORT NAME TOKEN  notes there that NAME runs from here
 turtle_check.py watch HOST PORT NAME TOKEN  ends when the host has a new master, which does not know
-                                            the note
+                                            the note; where turtle_remote.sh is killed, it sees that
+                                            nothing of its run is left
 turtle_check.py release HOST PORT NAME TOKEN  takes back the note, and all parameters of NAME since
-turtle_check.py hold COMMAND...             becomes COMMAND; the kernel ends it with its parent
+turtle_check.py hold PID COMMAND...         becomes COMMAND; the kernel ends it with its parent PID
+turtle_check.py end TOKEN                   kills what a run of turtle_remote.sh has left running
 
 Exit status 1 if something is wrong, and one line that says what, and the remedy. Needs only the
 standard library; runs under the Python 2.7 of older robots, too.
@@ -36,8 +38,6 @@ except ImportError:
     from xmlrpclib import Error as XmlRpcError, ServerProxy
 
 TIMEOUT_S = 3.0
-# Of a line for the operator; a master may say anything.
-LONGEST = 500
 # From Linux's prctl.h.
 PR_SET_PDEATHSIG = 1
 CALLER = '/mhri_remote'
@@ -48,6 +48,10 @@ RUN_ID_TIMEOUT_S = 3.0
 # Of a line for the operator; a master may say anything.
 LONGEST = 500
 RUN_ID_TRIES = 15
+# What a run of turtle_remote.sh starts has this and its token in the environment.
+MARK = 'MHRI_REMOTE_ID='
+# roslaunch waits up to 17 s for its nodes before it kills them.
+END_S = 25.0
 # Ways in which a call to a master fails; half an answer is one of them.
 FAILURES = (XmlRpcError, HTTPException, ExpatError, OSError, socket.error)
 # On the host: which program has a port.
@@ -59,7 +63,7 @@ class Problem(Exception):
 
 
 def say(text):
-    """Tell the operator a line; a closed terminal is no reason to fail."""
+    """Print a line for the operator; ignore a closed terminal."""
     text = ''.join(char if ' ' <= char <= '~' else '?' for char in str(text))
     if len(text) > LONGEST:
         text = '{0} ... {1}'.format(text[:LONGEST - 200], text[-190:])
@@ -121,7 +125,7 @@ def master_at(host, port):
     try:
         is_master = proxy.getPid(CALLER)[0] == 1
     except (OSError, socket.error):
-        # It may be the master of driven robots: nobody should end it on our word.
+        # It may be the master of driven robots: the message must not ask to end it.
         raise Problem('{0} takes the connection at its port {1} but does not answer within '
                       '{2:.0f} s: the ROS master there is overloaded or hangs, or something else '
                       'has the port. Other robots may depend on it: see on the host what it is, '
@@ -167,7 +171,7 @@ def check_way_back(master, host, own, name):
         master.subscribeParam(caller, api, key)
         master.setParam(CALLER, key, 1)
         if not called.wait(TIMEOUT_S):
-            # A master that has ended meanwhile calls nobody back; this call shows it.
+            # A master that has ended meanwhile does not call back; this call shows it.
             master.getPid(CALLER)
             raise Problem('{0} does not reach this robot at {1}: does a firewall here stop it '
                           '(sudo ufw status), or is another address meant (--ip ADDR)?'.format(
@@ -220,14 +224,14 @@ def check_name(master, own, name):
         places.setdefault(place(master, node), node)
     alive = []
 
-    def knock(where):
+    def try_connect(where):
         try:
             socket.create_connection(where, TIMEOUT_S).close()
             alive.append(where)
         except (OSError, socket.error):
             pass  # a leftover of a robot that is gone: its name is free
 
-    threads = [threading.Thread(target=knock, args=(where,)) for where in places if where]
+    threads = [threading.Thread(target=try_connect, args=(where,)) for where in places if where]
     for thread in threads:
         thread.daemon = True
         thread.start()
@@ -348,28 +352,77 @@ class Claim(object):
                 silent = 0
 
 
-def end_with_parent():
-    """Let the kernel end this process (SIGTERM) when its parent ends."""
-    parent = os.getppid()
+def ends_with(parent):
+    """Have the kernel end this process (SIGTERM) with its parent; return whether that still is.
+
+    :param parent: its process id
+    """
     ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, int(signal.SIGTERM), 0, 0, 0)
-    if os.getppid() != parent:
-        sys.exit(1)
+    return os.getppid() == parent
 
 
-def hold(command):
+def hold(parent, command):
     """Become a command in its own session, which ends with our parent."""
     os.setsid()
-    end_with_parent()
+    if not ends_with(int(parent)):
+        sys.exit(1)
     # A shell starts background jobs with this signal ignored, and it would stay so.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     os.execvp(command[0], command)
 
 
+def left_of(token):
+    """Return what still runs of a run of turtle_remote.sh: {process id: command line}."""
+    left = {}
+    for entry in os.listdir('/proc'):
+        try:
+            with open('/proc/{0}/environ'.format(int(entry)), 'rb') as file:
+                marked = (MARK + token).encode() in file.read().split(b'\0')
+            if marked:
+                with open('/proc/{0}/cmdline'.format(entry), 'rb') as file:
+                    left[int(entry)] = file.read().replace(b'\0', b' ').decode('utf-8', 'replace')
+        except (ValueError, IOError, OSError):
+            continue  # no process, somebody else's, or it ended meanwhile
+    return left
+
+
+def end_left(token):
+    """Kill what a run of turtle_remote.sh has left running, and what that starts meanwhile."""
+    left = left_of(token)
+    while left:
+        for pid, words in left.items():
+            say('ending a leftover process: {0} {1}'.format(pid, words))
+            try:
+                os.kill(pid, signal.SIGKILL)
+            except OSError:
+                continue  # it ended meanwhile
+        time.sleep(0.1)
+        left = left_of(token)
+
+
 def watch(host, port, name, token):
-    """Watch whether the host knows that the robot runs from here."""
+    """Watch whether the host knows that the robot runs from here.
+
+    Where turtle_remote.sh is killed, this process sees that nothing drives on: roslaunch may lose
+    the signal where it comes while a node is being started.
+    """
     os.setsid()
-    end_with_parent()
+    script = int(token.split('-')[0])
+    signal.signal(signal.SIGTERM, lambda *_: end_watch(script, token))
+    if not ends_with(script):
+        end_watch(script, token)
     Claim(host, port, name, token).watch()
+
+
+def end_watch(script, token):
+    """End; where turtle_remote.sh has gone, wait for what it started, and kill what stays."""
+    if os.getppid() != script:
+        for _ in range(int(END_S / 0.1)):
+            if not left_of(token):
+                break
+            time.sleep(0.1)
+        end_left(token)
+    os._exit(1)
 
 
 COMMANDS = {
@@ -384,8 +437,11 @@ def main(arguments):
     """Do what the command line says; return the exit status."""
     socket.setdefaulttimeout(TIMEOUT_S)
     try:
-        if arguments[:1] == ['hold'] and len(arguments) > 1:
-            hold(arguments[1:])
+        if arguments[:1] == ['hold'] and len(arguments) > 2:
+            hold(arguments[1], arguments[2:])
+        if arguments[:1] == ['end'] and len(arguments) == 2:
+            end_left(arguments[1])
+            return 0
         if len(arguments) != 5 or arguments[0] not in COMMANDS:
             raise Problem('turtle_check.py was called with {0!r:.200}: it is for turtle_remote.sh '
                           'alone'.format(arguments))

@@ -9,10 +9,10 @@ LINK_PID=
 LINK_ENV=()
 # The table of nftables.
 LIMITS=
-# What the archive of turtlebot_deploy.sh --link becomes.
+# The folder into which the archive of turtlebot_deploy.sh --link is unpacked.
 LINK_PLACE=$HERE/link
 
-# What mhri_link is told.
+# The arguments of mhri_link.
 LINK_WORDS=()
 
 # choose_link: sets LINK_WORDS.
@@ -64,7 +64,7 @@ start_master() {
     return
   fi
   # Without the mark of this run: it outlives the rest, which is started again without it.
-  "$PYTHON" "$HERE/turtle_check.py" hold roscore -p "$PORT" </dev/null >/dev/null &
+  "$PYTHON" "$HERE/turtle_check.py" hold $$ roscore -p "$PORT" </dev/null >/dev/null &
   CORE_PID=$!
   until (: <"/dev/tcp/127.0.0.1/$PORT") 2>/dev/null; do
     running "$CORE_PID" || die "roscore could not start a ROS master on this robot: see above"
@@ -76,7 +76,7 @@ start_master() {
 # zenoh takes a tenth of a second over each call that fails, and a host would wait behind them.
 limit_callers() {
   local link_port=${LISTEN##*:} admin=(sudo -n)
-  if [ -n "$ROUTER" ] || [[ $LISTEN == udp/* ]]; then return; fi
+  [ -z "$ROUTER" ] || return 0
   [ "$(id -u)" != 0 ] || admin=()
   LIMITS=mhri_link_$link_port
   if ! "${admin[@]}" env "PATH=$PATH:/usr/sbin:/sbin" nft -f - <<RULES 2>/dev/null
@@ -99,8 +99,8 @@ table inet $LIMITS {
 RULES
   then
     LIMITS=
-    warn "nothing limits how often somebody may call port $link_port (nft is not there, or wants root):" \
-      "who reaches it can keep the host out with calls that fail; see 'Keys in five minutes'"
+    warn "nothing limits the rate of calls to port $link_port (nft is missing, or needs root):" \
+      "anybody on its network can block the host by failing calls; see 'Keys in five minutes'"
   fi
 }
 

@@ -57,13 +57,14 @@ A bad radio
                        reaches, and link it to the host with mhri_link: see "Robots on a bad radio"
                        in the guide. No HOST_IP: the host calls, now or later. Needs ROS Noetic,
                        and 'turtlebot_deploy.sh --link' once
-  --listen ENDPOINT    with --link: where the host calls (default 0.0.0.0:7447). On a radio that
-                       loses packets give keys, too (mhri_keys.sh), or try udp/0.0.0.0:7447
+  --listen ENDPOINT    with --link: where the host calls (default 0.0.0.0:7447). A radio that loses
+                       packets drives with keys alone (mhri_keys.sh)
   --router ENDPOINT    with --link: instead call a router that the host calls, too, such as
                        192.0.2.1:7447
-                       With a key in place (mhri_keys.sh put), the link is by keys alone; without
+                       With a key in place (mhri_keys.sh put), the link uses keys only; without
                        one nobody is listened to
-  --keys off           with --link: without keys; whoever reaches the link may drive this robot
+  --keys off           with --link: without keys, on a network that you trust: anyone who reaches
+                       the link may drive this robot
   --keep-mb MB         with --link: of what the host missed while it was out of reach this robot
                        keeps so much on its disk, the newest (default 500)
 
@@ -185,11 +186,14 @@ choose_network() {
 
 # held COMMAND...: runs it in its own session, so that Ctrl-C reaches only this script, which passes
 # it on once; should this script be killed, the kernel does.
-held() { exec env "MHRI_REMOTE_ID=$TOKEN" "$PYTHON" "$HERE/turtle_check.py" hold "$@"; }
+held() { exec env "MHRI_REMOTE_ID=$TOKEN" "$PYTHON" "$HERE/turtle_check.py" hold $$ "$@"; }
 
 start_all() {
   # Before anything sets a parameter: it notes the present ones.
   "$PYTHON" "$HERE/turtle_check.py" claim "$HOST_IP" "$PORT" "$NAME" "$TOKEN" || exit 1
+  # First of all: should this script be killed, it ends what does not end by itself.
+  "$PYTHON" "$HERE/turtle_check.py" watch "$HOST_IP" "$PORT" "$NAME" "$TOKEN" </dev/null &
+  WATCH_PID=$!
   held roslaunch "${BASE_LAUNCH[@]}" </dev/null &
   BASE_PID=$!
   if "$CAMERA" && [ "${#CAMERA_LAUNCH[@]}" -gt 0 ]; then
@@ -202,16 +206,14 @@ start_all() {
     GUARD_PID=$!
   fi
   if "$LINK"; then start_link; fi
-  "$PYTHON" "$HERE/turtle_check.py" watch "$HOST_IP" "$PORT" "$NAME" "$TOKEN" </dev/null &
-  WATCH_PID=$!
 }
 
 running() { [ -n "$1" ] && kill -0 "$1" 2>/dev/null; }
 
-# nap: waits a second; a signal cuts it short.
+# nap: waits a second; a signal cuts it short, and nothing of it is left.
 nap() {
   sleep 1 &
-  wait $! || true
+  wait $! || kill $! 2>/dev/null || true
 }
 
 # end_all: asks everything started to end, waits, and kills what did not.
@@ -224,21 +226,8 @@ end_all() {
   for pid in "${pids[@]}"; do
     while running "$pid" && [ "$SECONDS" -lt "$deadline" ]; do sleep 0.1; done
   done
-  end_leftovers
+  "$PYTHON" "$HERE/turtle_check.py" end "$TOKEN" || true
   BASE_PID='' CAMERA_PID='' GUARD_PID='' WATCH_PID='' LINK_PID=''
-}
-
-# end_leftovers: kills what this run started and left running, known by its mark.
-end_leftovers() {
-  local entry pid
-  for entry in /proc/[0-9]*/environ; do
-    pid=${entry#/proc/}
-    pid=${pid%/environ}
-    if [ "$pid" != "$$" ] && grep -qzsxF "MHRI_REMOTE_ID=$TOKEN" "$entry"; then
-      warn "ending a leftover process: $pid $(tr '\0' ' ' 2>/dev/null <"/proc/$pid/cmdline")"
-      kill -KILL "$pid" 2>/dev/null || true
-    fi
-  done
 }
 
 # Notes the first signal; the main loop, or the exit trap, then ends everything.

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""When to mention a robot's battery: the same thresholds for row, tile, line and event."""
+"""Levels of a robot's battery: common thresholds for row, tile, line and event."""
 from typing import Optional
 
 # Levels of a battery, best first.
@@ -14,8 +14,8 @@ HYSTERESIS = 0.03
 def battery_level(fraction: Optional[float], before: str = FINE) -> str:
     """Return the level of a battery: FINE, LOW (30 % or less) or FLAT (15 % or less).
 
-    :param fraction: its charge in [0, 1]; None and NaN leave the level as it was
-    :param before: the level so far
+    :param fraction: its charge in [0, 1]; None and NaN leave the level unchanged
+    :param before: the previous level
     """
     if fraction is None or fraction != fraction:
         return before

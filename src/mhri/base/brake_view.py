@@ -1,25 +1,26 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a robot's obstacle brake does, for its row and its tile, and in words."""
+"""The state of a robot's obstacle brake, for its row and its tile, and its description."""
 import math
 from dataclasses import dataclass
 
-# What it does. UNSEEN: nothing looks that way, so it crawls back, or does not go; NO_SCAN: nothing
-# fresh from laser or depth camera, so no way forward; NO_PLACE: nobody says where a laser sits, so
-# it goes only where others look; CANNOT: robots of this type have neither, it is driven without a
-# brake.
-OFF, ON, SLOWS, UNSEEN = '', 'on', 'slows', 'unseen'
-NO_SCAN, NO_PLACE, CANNOT = 'no_scan', 'no_place', 'cannot'
+from mhri.base.reasons import NO_PLACE, NO_SCAN, SLOWS, UNSEEN
+
+# States of the brake. UNSEEN: no sensor covers that direction, so the robot crawls back or stops;
+# NO_SCAN: no recent scan of laser or depth camera, so no motion forward; NO_PLACE: the pose of a
+# laser is unknown, so the robot moves only where others cover; CANNOT: robots of this type have no
+# such sensor, so they are driven without a brake.
+OFF, ON, CANNOT = '', 'on', 'cannot'
 WORDS = (OFF, ON, SLOWS, UNSEEN, NO_SCAN, NO_PLACE, CANNOT)
 
 
 @dataclass(frozen=True)
 class BrakeView:
-    """What the brake does: one of :data:`WORDS`.
+    """The state of the brake: one of :data:`WORDS`.
 
-    ``free_way_m`` is the way to what slows the robot down [m], NaN while nothing does. ``on_robot``
-    is true where the brake is that of its guard. ``back_after_s`` is after how long without a link
-    the robot goes back by itself [s], 0 for never.
+    ``free_way_m`` is the distance to the obstacle that slows the robot down [m], NaN without one.
+    ``on_robot`` is true if the brake is that of its guard. ``back_after_s`` is the time without a
+    link after which the robot drives back by itself [s], 0 for never.
     """
 
     word: str = ''
@@ -29,12 +30,12 @@ class BrakeView:
 
     @property
     def holds(self) -> bool:
-        """Whether it may keep the robot still though the stick is held."""
+        """Whether the brake may keep the robot still while the stick is deflected."""
         return self.word in (SLOWS, UNSEEN, NO_SCAN, NO_PLACE)
 
 
 def brake_words(brake: BrakeView) -> str:
-    """Return what an operator has to know of the brake, '' for nothing."""
+    """Describe the brake's state for the operator, '' if there is nothing to report."""
     if brake.word == SLOWS:
         if not math.isfinite(brake.free_way_m):
             return 'brake: slows for something ahead'
@@ -45,28 +46,14 @@ def brake_words(brake: BrakeView) -> str:
             CANNOT: 'no brake: it has no laser or depth camera'}.get(brake.word, '')
 
 
-def standing_words(brake: BrakeView) -> str:
-    """Return why the brake keeps a robot still, and what to do; '' where it does not."""
-    if not brake.holds:
-        return ''
-    if brake.word == NO_SCAN:
-        return 'brake: no laser or depth data: back away, or switch the brake off'
-    if brake.word == NO_PLACE:
-        return 'brake: place of a laser unknown: name it in tf or in the type, or switch the ' \
-               'brake off'
-    if brake.word == UNSEEN:
-        return 'brake: it does not see that way: turn less, or turn to it first'
-    return 'brake: something is in the way: back away or turn'
-
-
 def guard_words(brake: BrakeView) -> str:
-    """Return what the guard on a robot does by itself, '' for nothing."""
+    """Describe the autonomous functions of the guard on a robot, '' for none."""
     return ', '.join(filter(None, ('brakes by itself' if brake.on_robot else '',
                                    back_words(brake))))
 
 
 def back_words(brake: BrakeView) -> str:
-    """Return that a robot would go back by itself, '' where it stays."""
+    """Describe when a robot drives back by itself, '' if it stays in place."""
     if brake.back_after_s <= 0.0:
         return ''
     return 'goes back alone after {:g} s without a link'.format(brake.back_after_s)

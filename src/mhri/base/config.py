@@ -1,21 +1,24 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Turns configuration text into checked values; refuses unknown keys by name."""
+"""Parses configuration text into validated values; refuses unknown keys by name."""
 import reprlib
-from typing import Dict, List, NoReturn, Optional, Tuple, TypeVar, Union, overload
+from numbers import Real
+from typing import (
+    Any, Callable, Dict, Iterable, List, NoReturn, Optional, Tuple, Type, TypeVar, Union)
 
 import yaml
 
 Default = TypeVar('Default')
+Value = TypeVar('Value')
 
 # Limits for a configuration. The shipped ones have at most 2 kB, 300 values and 6 levels.
 MAX_BYTES = 250 * 1000
 MAX_VALUES, MAX_DEPTH = 10 * 1000, 40
-# Words of one text without quotes, each of which costs PyYAML a search; digits of a number or date.
+# Words of one unquoted text, each of which costs PyYAML a search; digits of a number or date.
 MAX_WORDS, MAX_DIGITS = 50 * 1000, 64
 MAX_ERROR = 300
 _MAX_KEY, _MAX_ORIGIN = 60, 130
-_REQUIRED = object()
+_REQUIRED: Any = object()
 _SHORT = reprlib.Repr()
 _SHORT.maxstring = _SHORT.maxother = _SHORT.maxlong = 80
 _SHORT.maxlevel = 2
@@ -24,17 +27,17 @@ _SHORT.maxlevel = 2
 def shown(value: object) -> str:
     """Return any value as text for an error: like ``repr``, but at most 600 characters.
 
-    Cut lists and mappings after a few items, texts and numbers in the middle.
+    Lists and mappings are cut after a few items, texts and numbers in the middle.
     """
     try:
         return _SHORT.repr(value)
-    except ValueError:  # Python writes no number of more than 4,300 digits
+    except ValueError:  # Python does not format numbers of more than 4,300 digits
         return 'a number of too many digits'
 
 
 def _cut(text: str, most: int, tail: int) -> str:
-    """Return a printable text of ``most`` characters at most, its last ``tail`` kept."""
-    if len(text) > 2 * most:  # before each character is checked
+    """Return a printable text of at most ``most`` characters, with its last ``tail`` kept."""
+    if len(text) > 2 * most:  # before the check of each character
         text = text[:most] + text[-most:]
     text = ''.join(char if char.isprintable() else char.encode('unicode_escape').decode('ascii')
                    for char in text)
@@ -48,7 +51,7 @@ class ConfigError(ValueError):
 
     :param origin: the file (or parameter namespace) the value came from
     :param key: dotted key inside it, or '' for the whole file
-    :param problem: what is wrong and what would be right, as a sentence without a full stop
+    :param problem: the problem and the remedy, as a sentence without a full stop
 
     The message is one printable line of at most :data:`MAX_ERROR` characters.
     """
@@ -64,7 +67,7 @@ class ConfigError(ValueError):
 
 
 class Section:
-    """One mapping of a configuration, read key by key; :meth:`close` refuses what was not read."""
+    """One mapping of a configuration, read key by key; :meth:`close` refuses unread keys."""
 
     def __init__(self, mapping: object, origin: str, path: str = '') -> None:
         if not isinstance(mapping, dict):
@@ -75,7 +78,7 @@ class Section:
         self._left = dict(mapping)
 
     def key(self, name: object) -> str:
-        """Return the dotted name of a key, as error messages write it."""
+        """Return the dotted name of a key, as used in error messages."""
         return '{}.{}'.format(self._path, name) if self._path else str(name)
 
     def error(self, name: object, problem: str) -> ConfigError:
@@ -84,6 +87,10 @@ class Section:
 
     def __contains__(self, name: str) -> bool:
         return self._left.get(name) is not None
+
+    def names(self) -> List[str]:
+        """Return the keys that were not read yet, as texts."""
+        return [str(name) for name in self._left]
 
     def take(self, name: str, default: object = _REQUIRED) -> object:
         """Return the raw value of a key; a missing key is an error unless there is a default."""
@@ -94,94 +101,50 @@ class Section:
             raise self.error(name, 'is missing')
         return default
 
-    @overload
-    def text(self, name: str) -> str: ...
+    def _read(self, name: str, default: Default, kind: Type[Value], expected: str,
+              is_right: Callable[[Any], bool] = lambda value: True) -> Union[Value, Default]:
+        """Return the value of a key, checked by type and ``is_right``, or the default."""
+        value = self.take(name, default)
+        if value is default:
+            return default
+        if isinstance(value, kind) and isinstance(value, bool) == (kind is bool) \
+                and is_right(value):
+            return value
+        raise self.error(name, 'expected {}, got {}'.format(expected, shown(value)))
 
-    @overload
-    def text(self, name: str, default: Default) -> Union[str, Default]: ...
-
-    def text(self, name: str, default: object = _REQUIRED) -> object:
+    def text(self, name: str, default: Default = _REQUIRED) -> Union[str, Default]:
         """Return a string."""
-        value = self.take(name, default)
-        if value is not default and not isinstance(value, str):
-            raise self.error(name, 'expected text, got {}'.format(shown(value)))
-        return value
+        return self._read(name, default, str, 'text')
 
-    @overload
-    def flag(self, name: str) -> bool: ...
-
-    @overload
-    def flag(self, name: str, default: Default) -> Union[bool, Default]: ...
-
-    def flag(self, name: str, default: object = _REQUIRED) -> object:
+    def flag(self, name: str, default: Default = _REQUIRED) -> Union[bool, Default]:
         """Return a boolean."""
-        value = self.take(name, default)
-        if value is not default and not isinstance(value, bool):
-            raise self.error(name, 'expected true or false, got {}'.format(shown(value)))
-        return value
+        return self._read(name, default, bool, 'true or false')
 
-    @overload
-    def number(self, name: str, low: float, high: float) -> float: ...
-
-    @overload
     def number(self, name: str, low: float, high: float,
-               default: Default) -> Union[float, Default]: ...
-
-    def number(self, name: str, low: float, high: float, default: object = _REQUIRED) -> object:
+               default: Default = _REQUIRED) -> Union[float, Default]:
         """Return a finite float in [low, high]."""
-        value = self.take(name, default)
-        if value is default:
-            return value
-        if not isinstance(value, (int, float)) or isinstance(value, bool) \
-                or not low <= value <= high:
-            raise self.error(name, 'expected a number from {:g} to {:g}, got {}'.format(
-                low, high, shown(value)))
-        return float(value)
+        value: Any = self._read(name, default, Real, 'a number from {:g} to {:g}'.format(low, high),
+                                lambda value: low <= value <= high)
+        return default if value is default else float(value)
 
-    @overload
-    def index(self, name: str) -> int: ...
-
-    @overload
-    def index(self, name: str, default: Default) -> Union[int, Default]: ...
-
-    def index(self, name: str, default: object = _REQUIRED) -> object:
+    def index(self, name: str, default: Default = _REQUIRED) -> Union[int, Default]:
         """Return a whole number >= 0 (an axis or a button)."""
-        value = self.take(name, default)
-        if value is default:
-            return value
-        if not isinstance(value, int) or isinstance(value, bool) or value < 0:
-            raise self.error(name, 'expected a whole number from 0 up, got {}'.format(shown(value)))
-        return value
+        return self._read(name, default, int, 'a whole number from 0 up', lambda value: value >= 0)
 
-    @overload
-    def texts(self, name: str) -> Tuple[str, ...]: ...
-
-    @overload
-    def texts(self, name: str, default: Default) -> Union[Tuple[str, ...], Default]: ...
-
-    def texts(self, name: str, default: object = _REQUIRED) -> object:
+    def texts(self, name: str, default: Default = _REQUIRED) -> Union[Tuple[str, ...], Default]:
         """Return a tuple of strings; one string alone counts as a list of one."""
-        value = self.take(name, default)
+        value: Any = self.take(name, default)
         if value is default:
-            return value
-        if isinstance(value, str):
-            value = [value]
-        if not isinstance(value, list) or not all(isinstance(item, str) for item in value):
+            return default
+        items = [value] if isinstance(value, str) else value
+        if not isinstance(items, list) or not all(isinstance(item, str) for item in items):
             raise self.error(name, 'expected a list of texts, got {}'.format(shown(value)))
-        return tuple(value)
+        return tuple(items)
 
-    @overload
-    def section(self, name: str) -> 'Section': ...
-
-    @overload
-    def section(self, name: str, default: Default) -> Union['Section', Default]: ...
-
-    def section(self, name: str, default: object = _REQUIRED) -> object:
+    def section(self, name: str, default: Default = _REQUIRED) -> Union['Section', Default]:
         """Return a sub-section, or the default if the key is missing."""
         value = self.take(name, default)
-        if value is default:
-            return value
-        return self.sub_section(name, value)
+        return default if value is default else self.sub_section(name, value)
 
     def sub_section(self, name: str, value: object) -> 'Section':
         """Return a value taken from a key as a sub-section."""
@@ -189,31 +152,27 @@ class Section:
 
     def sections(self, name: str) -> List['Section']:
         """Return the sub-sections of a list of mappings."""
-        value = self.take(name)
-        if not isinstance(value, list):
-            raise self.error(name, 'expected a list, got {}'.format(shown(value)))
+        value = self._read(name, _REQUIRED, list, 'a list')
         return [Section(item, self.origin, '{}[{}]'.format(self.key(name), number))
                 for number, item in enumerate(value)]
 
     def named_sections(self, name: str) -> Dict[str, 'Section']:
         """Return {key: sub-section} of a mapping of mappings; {} if the key is missing."""
-        value = self.take(name, {})
-        if not isinstance(value, dict):
-            raise self.error(name, 'expected a mapping, got {}'.format(shown(value)))
+        value = self._read(name, {}, dict, 'a mapping')
         return {str(key): Section(item, self.origin, '{}.{}'.format(self.key(name), key))
                 for key, item in value.items()}
 
     def close(self) -> None:
-        """Raise for keys that nothing asked for: most often a spelling mistake."""
+        """Raise an error for unread keys, most often a spelling mistake."""
         if self._left:
             name = sorted(self._left, key=str)[0]
             raise self.error(name, 'unknown key')
 
 
 class _Loader(yaml.SafeLoader):  # type: ignore[misc]  # mypy does not look into yaml
-    """Reads YAML as ``SafeLoader`` does, but gives up before a text costs much time or memory.
+    """Reads YAML like ``SafeLoader``, but gives up before a text costs much time or memory.
 
-    An alias counts as all the values it stands for: nine nested lists of nine aliases each are 387
+    An alias counts as all the values it refers to: nine nested lists of nine aliases each are 387
     million values in 200 bytes.
     """
 
@@ -223,7 +182,7 @@ class _Loader(yaml.SafeLoader):  # type: ignore[misc]  # mypy does not look into
         self._sizes: Dict[str, int] = {}
 
     def compose_node(self, parent: Optional[yaml.Node], index: object) -> yaml.Node:
-        """Count the next value and those in it."""
+        """Count the next value and its nested values."""
         event = self.peek_event()
         alias = isinstance(event, yaml.AliasEvent)
         if alias and event.anchor in self.anchors and event.anchor not in self._sizes:
@@ -242,18 +201,18 @@ class _Loader(yaml.SafeLoader):  # type: ignore[misc]  # mypy does not look into
         return node
 
     def construct_object(self, node: yaml.Node, deep: bool = False) -> object:
-        """Return the value of a node; an impossible tag is an error in the file."""
+        """Return the value of a node; an invalid tag is an error in the file."""
         scalar = isinstance(node, yaml.ScalarNode)
         if scalar and len(node.value) > MAX_DIGITS and node.tag in _MEASURED:
             self._refuse('a number or date of {} characters'.format(len(node.value)), node)
         try:
             return super().construct_object(node, deep)
         except (ValueError, LookupError, AttributeError, TypeError, ArithmeticError):
-            self._refuse('{} is no {}'.format(
+            self._refuse('{} is not a valid {}'.format(
                 shown(node.value) if scalar else 'this', node.tag.rpartition(':')[2]), node)
 
     def scan_plain_spaces(self, indent: int, start_mark: yaml.Mark) -> List[str]:
-        """Count the words of texts without quotes."""
+        """Count the words of unquoted texts."""
         self._words += 1
         if self._words > MAX_WORDS:
             raise yaml.scanner.ScannerError(
@@ -269,7 +228,7 @@ _MEASURED = {'tag:yaml.org,2002:' + kind for kind in ('int', 'float', 'timestamp
 
 
 def parse_yaml(text: str, origin: str) -> Section:
-    """Return the top section of a YAML text; takes less than a second, whatever the text.
+    """Return the top section of a YAML text; takes less than a second for any text.
 
     :raises ConfigError: the text is not YAML, larger than this module's limits, or not a mapping
     """
@@ -285,6 +244,24 @@ def parse_yaml(text: str, origin: str) -> Section:
         raise ConfigError(origin, '', 'is not valid YAML: {}'.format(
             ' '.join(str(error).split())))
     return Section(data, origin)
+
+
+def parse_all(files: Iterable[Tuple[str, str]], parse: Callable[[str, str], Value]
+              ) -> Tuple[List[Value], List[ConfigError]]:
+    """Parse many texts; an invalid one does not affect the others.
+
+    :param files: pairs (origin, text)
+    :param parse: a function of text and origin that raises :class:`ConfigError`
+    :returns: ([values], [ConfigError]), in their order
+    """
+    found: List[Value] = []
+    errors: List[ConfigError] = []
+    for origin, text in files:
+        try:
+            found.append(parse(text, origin))
+        except ConfigError as error:
+            errors.append(error)
+    return found, errors
 
 
 def short(error: Exception) -> str:

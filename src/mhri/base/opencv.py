@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""OpenCV's ``cv2``, loaded so that an interrupt that comes meanwhile is not lost.
+"""OpenCV's ``cv2``, loaded without losing an interrupt that arrives meanwhile.
 
-Loading takes a third of a second, and seconds on a busy computer. Where numpy is loaded already,
-OpenCV's own code swallows the KeyboardInterrupt of a SIGINT that came in that time: the program
-runs on, and roslaunch waits 15 s for its end.
+Loading takes a third of a second, and seconds on a busy computer. If numpy is already loaded,
+OpenCV's own code swallows the KeyboardInterrupt of a SIGINT in that time: the program runs on, and
+roslaunch waits 15 s for its end.
 """
 import signal
 from types import FrameType
@@ -12,7 +12,7 @@ from typing import Any, List, Optional
 
 
 def _loaded() -> Any:
-    """Return the module; an interrupt that came meanwhile takes effect once it is loaded."""
+    """Return the module; an interrupt during the import takes effect once it is loaded."""
     came: List[int] = []
 
     def note(number: int, _: Optional[FrameType]) -> None:
@@ -21,7 +21,7 @@ def _loaded() -> Any:
     try:
         before = signal.signal(signal.SIGINT, note)
     except ValueError:
-        # Interrupts are for the main thread alone.
+        # Only the main thread gets interrupts.
         import cv2
         return cv2
     try:

@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a sensor can possibly report: one table of bounds, far beyond any real robot.
+"""Bounds of plausible sensor values: one table, far beyond any real robot.
 
 A value beyond its bound comes from a fault (bytes of another type, a driver that divides by zero)
-or from somebody who means harm. It is no measurement: it counts as NaN, as if it had not arrived.
-NaN itself is no fault: drivers write it for what they do not measure.
+or from an attack. It is replaced by NaN, as if it had not arrived. NaN itself is not a fault:
+drivers send it for a missing measurement.
 """
 from typing import Dict, List, NamedTuple, Optional, Sequence, Tuple
 
@@ -12,7 +12,7 @@ import numpy as np
 
 
 class Bound(NamedTuple):
-    """The least and the greatest possible value, and their unit."""
+    """The minimum and maximum possible value, and their unit."""
 
     least: float
     greatest: float
@@ -31,9 +31,10 @@ SPEED = 'speed'
 PLACE = 'place'
 RANGE = 'range'
 BATTERY = 'battery'
+SENSOR = 'sensor'
 
-#: The fastest gyroscopes read 350 rad/s and shock sensors 5,000 g; a place may be in a national
-#: grid, whose numbers reach 10,000 km; a battery's charge comes as fraction or as percent.
+#: The fastest gyroscopes read 350 rad/s and shock sensors 5,000 g; a position may be in a national
+#: grid, whose coordinates reach 10,000 km; a battery's charge is a fraction or a percentage.
 BOUNDS: Dict[str, Bound] = {
     QUATERNION: _within(10.0, ''),
     ANGLE: _within(1e6, 'rad'),
@@ -43,25 +44,27 @@ BOUNDS: Dict[str, Bound] = {
     PLACE: _within(1e7, 'm'),
     RANGE: Bound(0.0, 1e4, 'm'),
     BATTERY: Bound(0.0, 110.0, '%'),
+    # Of any kind, in any unit; beyond the limits that a type may name.
+    SENSOR: _within(1e12, ''),
 }
 #: A full turn in steps of 0.0036 degrees; no laser has more beams.
-MOST_BEAMS = 100_000
+MAX_BEAMS = 100_000
 
 
 def can_be(kind: str, value: float) -> bool:
-    """Tell whether a sensor can report a number; NaN it cannot."""
+    """Return whether a value is plausible; False for NaN."""
     bound = BOUNDS[kind]
     return bound.least <= value <= bound.greatest
 
 
 def sifted(kinds: Sequence[str], values: Sequence[float]) -> Tuple[List[float], Optional[str]]:
-    """Return (values with NaN for each impossible one, the first of those in words or None).
+    """Return (values with NaN for each impossible one, description of the first of those or None).
 
     :param kinds: key of :data:`BOUNDS` for each value
     """
     kept, problem = list(values), None
     for index, (kind, value) in enumerate(zip(kinds, values)):
-        # Both comparisons are false for NaN, which passes unnoticed.
+        # Both comparisons are false for NaN, which is kept.
         bound = BOUNDS[kind]
         if value < bound.least or value > bound.greatest:
             kept[index] = float('nan')
@@ -70,13 +73,13 @@ def sifted(kinds: Sequence[str], values: Sequence[float]) -> Tuple[List[float], 
 
 
 def beams_problem(count: int, angle_min: float, angle_increment: float) -> Optional[str]:
-    """Return in words why a scan is impossible, None if it is possible.
+    """Describe why a scan is impossible, None if it is possible.
 
     :param count: number of its ranges
-    :param angle_min: of the first of them [rad]
-    :param angle_increment: from one to the next [rad]
+    :param angle_min: angle of the first range [rad]
+    :param angle_increment: angle between two ranges [rad]
     """
-    if count > MOST_BEAMS:
+    if count > MAX_BEAMS:
         return '{} beams'.format(count)
     for value in (angle_min, angle_increment):
         if not can_be(ANGLE, value):
@@ -85,9 +88,9 @@ def beams_problem(count: int, angle_min: float, angle_increment: float) -> Optio
 
 
 def thinned(ranges: np.ndarray, most: int) -> Tuple[np.ndarray, int]:
-    """Return (at most ``most`` ranges, how many beams each stands for).
+    """Return (at most ``most`` ranges, number of beams per range).
 
-    Of beams taken together the nearest counts: nothing that the robot could hit is left out.
+    Each group of beams keeps its nearest, so that no obstacle is lost.
 
     :param ranges: array [m], NaN for no measurement
     """

@@ -4,23 +4,24 @@
 import math
 import re
 from dataclasses import dataclass, field, replace
-from typing import Any, Callable, Dict, Iterable, List, Mapping, Optional, Tuple
+from functools import partial
+from typing import Any, Callable, Dict, Iterable, List, Mapping, Optional, Sequence, Tuple
 
+from mhri.base.accessories import Accessory, read_accessories
 from mhri.base.config import ConfigError, parse_yaml, Section, shown
 from mhri.base.robot_hardware import (
     HardwareStopSpec, MotorPowerSpec, read_hardware_stop, read_motor_power)
 
 ODOMETRY_TYPES = ('nav_msgs/Odometry', 'turtlesim/Pose')
-# Unless its type says otherwise, a robot is silent after this long without odometry [s].
+# Default time without odometry after which a robot is silent [s].
 SILENT_AFTER_S = 1.0
-# And so large is one whose type does not say it: a robot on a task keeps that much room [m].
+# Default radius of a robot, which is the clearance that a robot on a task keeps [m].
 RADIUS_M = 0.25
-_HARDWARE: Dict[str, Callable[[Section], Any]] = {
-    'motor_power': read_motor_power, 'hardware_stop': read_hardware_stop}
-# http://wiki.ros.org/Names, without "~": no topic of a robot is private to us.
+_HARDWARE = ('motor_power', 'hardware_stop')
+# http://wiki.ros.org/Names, without "~": a robot's topics are never private to our nodes.
 _TOPIC = re.compile(r'/?[A-Za-z][A-Za-z0-9_]*(/[A-Za-z0-9_]+)*\Z')
-_MOST_LETTERS = 250
-#: Ahead of the robot's middle, to the left [m], turned to the left [rad].
+_MAX_LETTERS = 250
+#: Ahead of the robot's centre, to the left [m], turned to the left [rad].
 LaserPlace = Tuple[float, float, float]
 # The keys of a template that list topics.
 TOPIC_KEYS = ('command', 'imu', 'odometry', 'rgb', 'depth', 'cloud', 'scan', 'battery')
@@ -28,10 +29,20 @@ TOPIC_KEYS = ('command', 'imu', 'odometry', 'rgb', 'depth', 'cloud', 'scan', 'ba
 
 @dataclass(frozen=True)
 class Limits:
-    """The highest speeds a robot may be asked for: linear [m/s] and angular [rad/s], both > 0."""
+    """The maximum speeds of commands to a robot: linear [m/s] and angular [rad/s], both > 0.
+
+    ``holonomic``: it can move sideways; then the linear limit is for any direction.
+    """
 
     linear_mps: float
     angular_rad_s: float
+    holonomic: bool = False
+
+
+def common_limits(limits: Sequence[Limits]) -> Limits:
+    """Return the common limits of a group: the lowest of each of their limits."""
+    return Limits(min(one.linear_mps for one in limits), min(one.angular_rad_s for one in limits),
+                  all(one.holonomic for one in limits))
 
 
 @dataclass(frozen=True)
@@ -52,22 +63,22 @@ class Export:
     def error(self, key: str, problem: str) -> ConfigError:
         """Return (not raise) a :class:`ConfigError` that names package, file and remedy."""
         return ConfigError('package {}: {}'.format(self.package, self.origin), key,
-                           problem + '; mend it there and start mhri again')
+                           problem + '; fix it there and start mhri again')
 
 
 @dataclass(frozen=True)
 class Seen:
-    """What the graph says about a robot, besides its parameters.
+    """Properties of a robot derived from the graph, besides its parameters.
 
-    :param at_root: it has no namespace; its topics begin at ``/``
+    :param at_root: whether it has no namespace; then its topics begin at ``/``
     :param kind: the type recognised by its topics, None if it was not recognised
-    :param command: its velocity topic, as in a template; None if there is none, or if several are
+    :param command: its velocity topic, as in a template; None if it has none, or if several are
         equally likely
-    :param instance: where the topics of this robot begin, e.g. ``/turtle2``, if one node has
-        several robots; else None
-    :param behind: its velocity topics that a node of its own writes which reads velocity itself: a
-        multiplexer with its lock
-    :param guard_behind: those of them that its guard writes as well
+    :param instance: prefix of the topics of this robot, e.g. ``/turtle2``, if one node has several
+        robots; else None
+    :param behind: its velocity topics published by one of its own nodes that also subscribes
+        velocities: a multiplexer with its lock
+    :param guard_behind: the ones of these that its guard publishes as well
     """
 
     at_root: bool = False
@@ -78,13 +89,13 @@ class Seen:
     guard_behind: Tuple[str, ...] = ()
 
     def anything(self) -> bool:
-        """Tell whether anything but its name is known."""
+        """Return whether anything besides its name is known."""
         return bool(self.at_root or self.kind or self.command or self.instance or self.behind)
 
 
 @dataclass(frozen=True)
 class RobotType:
-    """A template: what a robot of this type offers below its namespace.
+    """A template: the interfaces of a robot of this type in its namespace.
 
     Every topic list is relative to the robot's namespace (:func:`mhri.base.names.topic_of`)
     and ordered: the first that exists (for ``command``: the first that has a subscriber) is used.
@@ -92,17 +103,17 @@ class RobotType:
     in a lab's own package, a class as ``package.module.Class``. ``known_by`` is {topic: ROS type}
     of topics that only robots of this type publish, to recognise robots without a ``robot_type``.
     ``silent_after_s``: a robot is silent after this long without odometry [s]; 0 means that silence
-    says nothing (it sends odometry only in motion). ``motor_power`` and ``hardware_stop`` are None
-    if there is no such thing. ``radius_m`` is the radius of the disc around all of it [m].
-    Where tf does not say it, ``laser_x_m`` and ``depth_x_m`` are how far ahead of its middle laser
-    and depth camera sit, ``depth_z_m`` how high the camera sits [m], 0: nobody knows; ``lasers``
-    is where each laser of ``scan`` sits: ahead, to the left [m], turned to the left [rad].
-    ``no_return`` is {range_max of a laser [m], None for any other: values by which it says "nothing
-    there"}, empty: as REP 117 says.
-    ``instance`` is the first segment of all its topics if one node may
-    have several such robots, each with its own first segment. ``behind`` are those of ``command``
-    that lie behind the robot's own multiplexer: a zero may go there, no command.
-    ``guard_behind``: what its guard passes on goes there.
+    has no meaning (it sends odometry only in motion). ``motor_power`` and ``hardware_stop`` are
+    None if not supported. ``radius_m`` is the radius of the disc that encloses it [m].
+    Used without tf: ``laser_x_m`` and ``depth_x_m`` are the distances of laser and depth camera
+    ahead of its centre, ``depth_z_m`` is the height of the camera [m], 0 if unknown; ``lasers``
+    is the pose of each laser of ``scan``: ahead, to the left [m], turned to the left [rad].
+    ``no_return`` is {range_max of a laser [m], None for any other: its values for "no return"}, if
+    empty, according to REP 117.
+    ``instance`` is the first segment of all its topics if one node may have several such robots,
+    each with its own first segment. ``behind`` are the topics of ``command`` behind the robot's own
+    multiplexer: zeros may go there, commands may not. ``guard_behind``: whether the guard's output
+    goes there. ``accessories`` are its tools and its other sensors.
     """
 
     name: str
@@ -133,6 +144,7 @@ class RobotType:
     instance: Optional[str] = None
     behind: Tuple[str, ...] = ()
     guard_behind: bool = False
+    accessories: Tuple[Accessory, ...] = ()
 
     @property
     def is_behind(self) -> bool:
@@ -140,10 +152,10 @@ class RobotType:
         return bool(self.behind) and set(self.command) <= set(self.behind)
 
     def laser_place(self, number: int) -> Optional[LaserPlace]:
-        """Return where the laser of ``scan[number]`` sits by its type, None: unknown.
+        """Return the pose of the laser of ``scan[number]`` by its type, None if unknown.
 
-        Of several lasers none is taken to look ahead: one that looks back would have the robot
-        drive into what it sees.
+        With several lasers, none is assumed to face forward: with one that faces backward the robot
+        would drive into obstacles it sees.
         """
         if self.lasers:
             return self.lasers[number]
@@ -156,12 +168,13 @@ class RobotType:
             for key in TOPIC_KEYS + ('behind',)}
         changes.update((key, getattr(self, key).at_root()) for key in _HARDWARE
                        if getattr(self, key))
+        changes['accessories'] = tuple(one.at_root() for one in self.accessories)
         return replace(self, **changes)
 
     def for_instance(self, place: str) -> 'RobotType':
         """Return this type with the topics of one of several robots.
 
-        :param place: where they begin, e.g. ``/turtle2``
+        :param place: their prefix, e.g. ``/turtle2``
         :raises ValueError: a node can have only one robot of this type
         """
         if self.instance is None:
@@ -169,13 +182,15 @@ class RobotType:
         own = len(self.instance)
         changes: Dict[str, Any] = {
             key: tuple(place + topic[own:] for topic in getattr(self, key)) for key in TOPIC_KEYS}
+        changes['accessories'] = tuple(
+            one.renamed(lambda name: place + name[own:]) for one in self.accessories)
         return replace(self, **changes)
 
     def with_model(self, model: object) -> 'RobotType':
         """Return this type with the limits of one of its models, e.g. ``waffle``.
 
         Without a model (None), the type keeps the limits of its file, which for a type with models
-        are those of the slowest: never drive an unknown robot faster than it can go.
+        are those of the slowest: an unknown robot is never driven faster than it can go.
 
         :raises ConfigError: the type has no such model
         """
@@ -188,42 +203,41 @@ class RobotType:
                        label='{} {}'.format(self.label, model.replace('_', ' ').title()))
 
 
-def _limits(section: Section) -> Limits:
+def _limits(section: Section, holonomic: bool) -> Limits:
     """Read ``linear_mps`` and ``angular_rad_s`` of a section."""
     limits = Limits(section.number('linear_mps', 0.001, 50.0),
-                    section.number('angular_rad_s', 0.001, 50.0))
+                    section.number('angular_rad_s', 0.001, 50.0), holonomic)
     section.close()
     return limits
 
 
 def parse_robot_type(text: str, origin: str) -> RobotType:
-    """Return the :class:`RobotType` that a YAML text describes.
+    """Parse a :class:`RobotType` from a YAML text.
 
-    :raises ConfigError: names the file and the wrong key
+    :raises ConfigError: a key is wrong; the text names it and the file
     """
     section = parse_yaml(text, origin)
     name = section.text('name')
-    odometry_type = _odometry_type(section)
+    holonomic = section.flag('holonomic', False)
     robot_type = RobotType(
-        name=name, label=section.text('label', name), window=section.text('window', 'turtlebot'),
-        limits=_limits(section.section('limits')),
-        models={key: _limits(item) for key, item in section.named_sections('models').items()},
-        odometry_type=odometry_type, known_by=_known_by(section),
-        silent_after_s=_silent_after_s(section), radius_m=_radius_m(section),
-        **_places(section), no_return=_no_return(section),
-        **{key: read(section) for key, read in _HARDWARE.items()},
-        instance=section.text('instance', None), **_all_topics(section))
-    robot_type = replace(robot_type, lasers=_lasers(section, len(robot_type.scan)))
+        name=name, limits=_limits(section.section('limits'), holonomic),
+        models={key: _limits(item, holonomic)
+                for key, item in section.named_sections('models').items()},
+        known_by=_known_by(section), instance=section.text('instance', None),
+        **{key: read(section) for key, read in _PARTS.items()})
+    robot_type = replace(robot_type, label=robot_type.label or name,
+                         lasers=_lasers(section, len(robot_type.scan)))
     _check_instance(section, robot_type)
     section.close()
     return robot_type
 
 
 def _check_instance(section: Section, robot_type: RobotType) -> None:
-    """Refuse an instance that is not the first segment of everything."""
+    """Refuse an instance that is not the first segment of every topic."""
     if robot_type.instance is None:
         return
     topics = [topic for key in TOPIC_KEYS for topic in getattr(robot_type, key)]
+    topics += [name for one in robot_type.accessories for name in one.names]
     for topic in topics + list(robot_type.known_by):
         if topic.partition('/')[0] != robot_type.instance:
             raise section.error('instance', '{} does not begin with {}/'.format(
@@ -242,7 +256,7 @@ def _odometry_type(section: Section) -> str:
 
 
 def _silent_after_s(section: Section) -> float:
-    """Read how long the odometry may be missing [s]; 0: for ever.
+    """Read how long the odometry may be missing [s], 0 for ever.
 
     Below 0.3 s, ordinary wireless networks would make a robot silent again and again.
     """
@@ -253,19 +267,8 @@ def _silent_after_s(section: Section) -> float:
     return value
 
 
-def _radius_m(section: Section) -> float:
-    """Read the radius of the disc around all of the robot."""
-    return section.number('radius_m', 0.02, 10.0, RADIUS_M)
-
-
-def _places(section: Section) -> Dict[str, Any]:
-    """Read where laser and depth camera sit on the robot, as far as that is given."""
-    rows = ('laser_x_m', -10.0), ('depth_x_m', -10.0), ('depth_z_m', 0.0)
-    return {key: section.number(key, least, 10.0) for key, least in rows if key in section}
-
-
 def _lasers(section: Section, count: int) -> Tuple[LaserPlace, ...]:
-    """Read where each of so many lasers sits, as far as that is given."""
+    """Read the poses of a number of lasers, if given."""
     rows = section.take('lasers', [])
     if not rows and isinstance(rows, list):
         return ()
@@ -277,14 +280,14 @@ def _lasers(section: Section, count: int) -> Tuple[LaserPlace, ...]:
 
 
 def _is_place(row: object) -> bool:
-    """Tell whether this is where a laser may sit: two distances [m] and an angle [degrees]."""
+    """Return whether a row is a valid laser pose: two distances [m] and an angle [degrees]."""
     return isinstance(row, list) and len(row) == 3 and all(
         isinstance(value, (int, float)) and not isinstance(value, bool) and abs(value) <= most
         for value, most in zip(row, (10.0, 10.0, 360.0)))
 
 
 def _no_return(section: Section) -> Dict[Optional[float], Tuple[float, ...]]:
-    """Read which ranges mean "nothing there": a list, or lists by the laser's range_max [m]."""
+    """Read the ranges that mean "no return": a list, or lists by the laser's range_max [m]."""
     rows = section.take('no_return', {})
     if isinstance(rows, list):
         rows = {None: rows}
@@ -301,7 +304,7 @@ def _no_return(section: Section) -> Dict[Optional[float], Tuple[float, ...]]:
 
 
 def _as_number(value: object) -> Optional[float]:
-    """Return a number, or the text of one, as parameters have it; None for anything else."""
+    """Convert a number or the text of one, as used in parameters; None for anything else."""
     if isinstance(value, bool) or not isinstance(value, (int, float, str)):
         return None
     try:
@@ -315,17 +318,12 @@ def _topics(section: Section, key: str) -> Tuple[str, ...]:
     """Read a list of topics; only ``command`` may not be empty."""
     topics = section.texts(key, ())
     for topic in topics:
-        if len(topic) > _MOST_LETTERS or not _TOPIC.match(topic):
+        if len(topic) > _MAX_LETTERS or not _TOPIC.match(topic):
             raise section.error(key, 'expected names of topics, e.g. cmd_vel, got {}'.format(
                 shown(topic)))
     if key == 'command' and not topics:
         raise section.error('command', 'name at least one velocity topic')
     return topics
-
-
-def _all_topics(section: Section) -> Dict[str, Any]:
-    """Read every list of topics, by its key."""
-    return {key: _topics(section, key) for key in TOPIC_KEYS}
 
 
 def _known_by(section: Section) -> Dict[str, str]:
@@ -337,10 +335,29 @@ def _known_by(section: Section) -> Dict[str, str]:
     return dict(signs)
 
 
+# Keys of a type's file and of a robot's parameters; each has a default.
+_PARTS: Dict[str, Callable[[Section], Any]] = {
+    'label': lambda section: section.text('label', ''),
+    'window': lambda section: section.text('window', 'turtlebot'),
+    'odometry_type': _odometry_type,
+    'silent_after_s': _silent_after_s,
+    # The disc that encloses the robot.
+    'radius_m': lambda section: section.number('radius_m', 0.02, 10.0, RADIUS_M),
+    # The poses of laser and depth camera on the robot.
+    'laser_x_m': lambda section: section.number('laser_x_m', -10.0, 10.0, 0.0),
+    'depth_x_m': lambda section: section.number('depth_x_m', -10.0, 10.0, 0.0),
+    'depth_z_m': lambda section: section.number('depth_z_m', 0.0, 10.0, 0.0),
+    'no_return': _no_return,
+    'motor_power': read_motor_power,
+    'hardware_stop': read_hardware_stop,
+    'accessories': read_accessories,
+    **{key: partial(_topics, key=key) for key in TOPIC_KEYS}}
+
+
 def load_robot_types(
         files: Iterable[Tuple[str, str]],
         exports: Iterable[Export] = ()) -> Tuple[Dict[str, RobotType], List[ConfigError]]:
-    """Parse many templates; one bad file never hides the good ones.
+    """Parse many templates; an invalid file does not affect the others.
 
     :param files: pairs (origin, text)
     :param exports: :class:`Export` of other packages; they never replace an existing type
@@ -348,29 +365,22 @@ def load_robot_types(
     """
     types: Dict[str, RobotType] = {}
     errors: List[ConfigError] = []
-    for origin, text in files:
+    own: List[Tuple[str, str, Optional[Export]]] = [(*file, None) for file in files]
+    for origin, text, export in own + [(one.origin, one.text, one) for one in exports]:
         try:
             robot_type = parse_robot_type(text, origin)
             if robot_type.name in types:
-                raise ConfigError(origin, 'name', 'a type {!r} exists already'.format(
-                    robot_type.name))
+                raise ConfigError(origin, 'name', 'there is a type {!r} already, choose another '
+                                  'name'.format(robot_type.name))
+            if export is not None and export.window:
+                robot_type = replace(robot_type, window=export.window)
             types[robot_type.name] = robot_type
         except ConfigError as error:
-            errors.append(error)
-    for export in exports:
-        try:
-            robot_type = parse_robot_type(export.text, export.origin)
-            if robot_type.name in types:
-                raise ConfigError(export.origin, 'name', 'there is a type {!r} already, choose '
-                                  'another name'.format(robot_type.name))
-            types[robot_type.name] = replace(robot_type,
-                                             window=export.window or robot_type.window)
-        except ConfigError as error:
-            errors.append(export.error(error.key, error.problem))
+            errors.append(error if export is None else export.error(error.key, error.problem))
     return types, errors
 
 
-#: what the error of a robot's own choice of a window is called
+#: key in the error on a robot's own choice of a window
 WINDOW_KEY = 'mhri.window'
 
 
@@ -383,8 +393,8 @@ def resolve_robot_type(types: Mapping[str, RobotType], robot: str, params: Mappi
     :param params: the parameters below its namespace as a nested dict: ``robot_type``,
         ``robot_model`` and, under ``mhri``, any key of a template file to override
     :param seen: :class:`Seen`; a robot driven as ``generic`` gets its real velocity topic
-    :returns: (RobotType, [ConfigError]); parameters that cannot be used are reported and left out;
-        an unknown type becomes ``generic``
+    :returns: (RobotType, [ConfigError]); unusable parameters are reported and left out; an unknown
+        type becomes ``generic``
     """
     errors: List[ConfigError] = []
     origin = '/' + robot
@@ -407,7 +417,7 @@ def resolve_robot_type(types: Mapping[str, RobotType], robot: str, params: Mappi
     if overrides:
         try:
             chosen, standard = _overridden(chosen, overrides, origin), chosen
-            # To show a window is to run its code: a robot may only choose among those installed.
+            # Showing a window runs its code, so a robot may only choose an installed one.
             if chosen.window not in {one.window for one in types.values()}:
                 errors.append(ConfigError(origin, WINDOW_KEY, 'no installed robot type has {!r}; '
                                           'export it from a package'.format(chosen.window[:80])))
@@ -419,9 +429,9 @@ def resolve_robot_type(types: Mapping[str, RobotType], robot: str, params: Mappi
 
 
 def _behind(chosen: RobotType, seen: Seen, overrides: object) -> RobotType:
-    """Return a generic type that knows which of its topics lie behind the robot's own multiplexer.
+    """Return a generic type with its topics behind the robot's own multiplexer marked.
 
-    What its own parameters name does not: whoever names it knows what is before it.
+    Topics set by the robot's parameters are not marked: they were chosen deliberately.
     """
     if chosen.name != 'generic':
         return chosen
@@ -432,7 +442,7 @@ def _behind(chosen: RobotType, seen: Seen, overrides: object) -> RobotType:
 
 
 def _behind_error(chosen: RobotType, origin: str) -> List[ConfigError]:
-    """Return that only its own multiplexer may drive a robot, with the remedy; [] otherwise."""
+    """Return the error if only the robot's own multiplexer may drive it, with the remedy; or []."""
     if not chosen.is_behind:
         return []
     return [ConfigError(origin, 'mhri/command', 'its velocity topic {} is written by a node of its '
@@ -444,28 +454,20 @@ def _overridden(robot_type: RobotType, overrides: object, origin: str) -> RobotT
     """Return the type with the values of a robot's ``mhri`` parameters."""
     section = Section(overrides, origin, 'mhri')
     changes: Dict[str, Any] = {
-        key: _topics(section, key) for key in TOPIC_KEYS if key in section}
+        key: read(section) for key, read in _PARTS.items() if key in section}
     if 'command' in changes:
         changes['behind'] = tuple(one for one in robot_type.behind if one in changes['command'])
-    if 'odometry_type' in section:
-        changes['odometry_type'] = _odometry_type(section)
-    changes.update((key, read(section)) for key, read in _HARDWARE.items() if key in section)
-    if 'silent_after_s' in section:
-        changes['silent_after_s'] = _silent_after_s(section)
-    if 'radius_m' in section:
-        changes['radius_m'] = _radius_m(section)
-    changes.update(_places(section))
     if 'lasers' in section or 'scan' in changes:
-        # Other topics are other lasers.
+        # Other topics mean other lasers.
         changes['lasers'] = _lasers(section, len(changes.get('scan', robot_type.scan)))
-    if 'no_return' in section:
-        changes['no_return'] = _no_return(section)
-    changes.update((key, section.text(key)) for key in ('label', 'window') if key in section)
+    holonomic = section.flag('holonomic', robot_type.limits.holonomic)
+    changes['limits'] = replace(robot_type.limits, holonomic=holonomic)
     if 'limits' in section:
         limits = section.section('limits')
         changes['limits'] = Limits(
             limits.number('linear_mps', 0.001, 50.0, robot_type.limits.linear_mps),
-            limits.number('angular_rad_s', 0.001, 50.0, robot_type.limits.angular_rad_s))
+            limits.number('angular_rad_s', 0.001, 50.0, robot_type.limits.angular_rad_s),
+            holonomic)
         limits.close()
     section.close()
     return replace(robot_type, **changes)

@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The last minute for a graph: rings of a fixed size that keep every peak.
 
-Samples of any rate go into bins of 1/30 s, of which each keeps the least and the greatest value and
-the times of its first and last sample. A curve is made of at most 300 points out of these, whatever
-the rate of the samples was: even in a window of a minute a spike of one sample shows.
+Samples of any rate go into bins of 1/30 s; each bin keeps the minimum and the maximum, and the
+times of its first and last sample. A curve has at most 300 points made from these, at any sample
+rate: even in a window of a minute a spike of one sample is visible.
 """
 from dataclasses import dataclass
 import math
@@ -16,12 +16,12 @@ import numpy as np
 BIN_S = 1.0 / 30.0
 LONGEST_S = 60.0
 POINTS = 300
-# Anything beyond this counts as no value, whoever hands it over: sums of larger ones overflow, and
-# painting the dashes of a line that long would never end.
+# Values beyond this count as missing: sums of larger ones overflow, and painting the dashes of such
+# a long line would never end.
 BIGGEST = 1e9
-# No line is drawn across a longer silence.
+# A line breaks at a longer silence.
 GAP_S = 0.5
-# Numbers in rows, as an array or not.
+# Rows of numbers, as an array or sequences.
 _Rows = Union[np.ndarray, Sequence[float], Sequence[Sequence[float]]]
 
 LINEAR = 'linear'
@@ -42,7 +42,7 @@ class BinRing:
 
     def __init__(self, keys: Iterable[str]) -> None:
         self.keys = tuple(keys)
-        # One more than the longest window needs: each of its ends cuts a bin in two.
+        # One more than the longest window needs: each end of the window may cut a bin.
         self._size = math.ceil(LONGEST_S / BIN_S) + 2
         shape = (self._size, len(self.keys))
         self._low, self._high = np.full(shape, np.nan), np.full(shape, np.nan)
@@ -52,11 +52,11 @@ class BinRing:
         self.latest: Optional[np.ndarray] = None
 
     def add(self, times_s: _Rows, rows: _Rows) -> None:
-        """Take samples.
+        """Add samples.
 
-        :param times_s: array (n,), ascending, of one clock that never goes back; a sample older
-            than the newest bin goes into that bin
-        :param rows: array (n, keys); NaN and values beyond :data:`BIGGEST` leave no trace
+        :param times_s: array (n,), ascending, of one monotonic clock; a sample older than the
+            newest bin goes into that bin
+        :param rows: array (n, keys); NaN and values beyond :data:`BIGGEST` are ignored
         """
         times_s, rows = np.asarray(times_s, float), np.array(rows, float)
         if not len(times_s):
@@ -85,7 +85,7 @@ class BinRing:
         self.latest = rows[-1]
 
     def copy(self) -> 'BinRing':
-        """Return a ring with the present contents."""
+        """Return a copy with the current contents."""
         other = BinRing.__new__(BinRing)
         other.__dict__.update(self.__dict__)
         for name in ('_low', '_high', '_first', '_last', '_bins'):
@@ -95,8 +95,8 @@ class BinRing:
     def curve(self, key: str, now_s: float, window_s: float) -> Tuple[np.ndarray, np.ndarray]:
         """Return (x, y) of one value: x seconds before ``now_s`` (<= 0), NaN if the line breaks.
 
-        Bins are put together by their number and not by their age, so that a peak keeps its shape
-        while it travels.
+        Bins are merged by their number and not by their age, so that a peak keeps its shape while
+        it moves.
         """
         column = self.keys.index(key)
         group = max(1, math.ceil(window_s / BIN_S / (POINTS // 2)))
@@ -118,7 +118,7 @@ class BinRing:
 
 def _points(first: np.ndarray, last: np.ndarray, low: np.ndarray,
             high: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
-    """Return the line through least and greatest values, in the order that follows its slope."""
+    """Return the line through the minima and maxima, in the order of its slope."""
     middle = low + high
     climbs = np.concatenate(([True], np.diff(middle) >= 0.0))
     x = np.column_stack((first, last)).ravel()
@@ -130,7 +130,7 @@ def _points(first: np.ndarray, last: np.ndarray, low: np.ndarray,
 
 def _broken(x: np.ndarray, y: np.ndarray, wraps: bool,
             step_s: float) -> Tuple[np.ndarray, np.ndarray]:
-    """Put a NaN where nothing came for long, and where an angle wraps around."""
+    """Insert a NaN at long gaps, and where an angle wraps around."""
     breaks = np.diff(x) > max(GAP_S, 2.0 * step_s)
     if wraps:
         breaks |= np.abs(np.diff(y)) > math.pi
@@ -154,16 +154,16 @@ class Series:
         return self.rings[key].curve(key, self.now_s, window_s)
 
     def latest(self, key: str) -> Optional[float]:
-        """Return the newest value of a key, None before the first sample; NaN if it held none."""
+        """Return the newest value of a key, None before the first sample; NaN if it was missing."""
         ring = self.rings[key]
         return None if ring.latest is None else float(ring.latest[ring.keys.index(key)])
 
 
 def roll_pitch_yaw(quaternions: np.ndarray) -> np.ndarray:
-    """Return the angles [rad] of orientations as an array (n, 3); turns about z, y, x in turn.
+    """Return roll, pitch and yaw [rad] as an array (n, 3); rotations about z, y, x in this order.
 
-    :param quaternions: array (n, 4) of x, y, z, w; other than unit length is scaled; zero length,
-        or an element beyond :data:`BIGGEST`, gives NaN
+    :param quaternions: array (n, 4) of x, y, z, w; scaled to unit length; zero length, or an
+        element beyond :data:`BIGGEST`, gives NaN
     """
     with np.errstate(invalid='ignore'):
         turns = np.where(np.abs(quaternions) <= BIGGEST, quaternions, np.nan)
@@ -176,7 +176,7 @@ def roll_pitch_yaw(quaternions: np.ndarray) -> np.ndarray:
 
 
 def round_step(least: float) -> float:
-    """Return the first of ... 0.1, 0.2, 0.5, 1, 2, 5 ... that is not less than a number > 0."""
+    """Return the first of ... 0.1, 0.2, 0.5, 1, 2, 5 ... not less than a number > 0."""
     decade = 10.0 ** math.floor(math.log10(least))
     return next(part * decade for part in (1.0, 2.0, 5.0, 10.0) if least <= part * decade * 1.0001)
 
@@ -184,8 +184,8 @@ def round_step(least: float) -> float:
 class AxisRange:
     """The range of an axis, without jitter: grows at once, shrinks late, ends on round numbers.
 
-    :param least: least half-width of the range, in the unit of the values
-    :param shrink_after_s: how long a smaller range must be enough before it shrinks [s]
+    :param least: minimum half-width of the range, in the unit of the values
+    :param shrink_after_s: how long a smaller range must suffice before the range shrinks [s]
     """
 
     def __init__(self, least: float, shrink_after_s: float = 4.0) -> None:
@@ -195,7 +195,7 @@ class AxisRange:
         self._ample_since: Optional[float] = None
 
     def follow(self, low: float, high: float, now_s: float) -> Tuple[float, float]:
-        """Return the limits for the least and greatest value on show (NaN: none); 0 is within."""
+        """Return the limits for the minimum and maximum shown (NaN for none); they include 0."""
         low, high = (0.0 if math.isnan(value) else value for value in (low, high))
         wanted = self._around(min(low, 0.0), max(high, 0.0))
         if wanted[0] < self._range[0] or wanted[1] > self._range[1]:
@@ -210,7 +210,7 @@ class AxisRange:
         return self._range
 
     def _around(self, low: float, high: float) -> Tuple[float, float]:
-        """Return round limits with room around the values; a side without values stays small."""
+        """Return round limits with a margin around the values; an empty side stays small."""
         reach = max(-low, high, self._least)
         step = round_step(reach / 5.0)
         margin = 0.05 * reach

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tasks as the screen shows them, as plain values: what can be started, and what is under way."""
+"""The available and the running tasks, as plain values for the screen."""
 from dataclasses import dataclass
 import math
 from typing import Optional, Tuple
@@ -10,10 +10,10 @@ import yaml
 
 @dataclass(frozen=True)
 class TaskView:
-    """What one robot does by itself.
+    """The task of one robot.
 
-    ``text`` says how it is getting on, or why it waits, ``left_m`` the way that is left [m], None
-    where that is not known.
+    ``text`` is its progress, or why it waits, ``left_m`` the remaining distance [m], None if
+    unknown.
     """
 
     label: str
@@ -26,8 +26,8 @@ class TaskView:
 class FieldView:
     """A parameter of a task.
 
-    ``default`` is YAML: '' where it has to be given, 'null' where it may be left out. ``least`` and
-    ``greatest`` are NaN of what is no number. ``choices`` are what a text may be, none: anything.
+    ``default`` is YAML: '' if the parameter is required, 'null' if it is optional. ``least`` and
+    ``greatest`` are NaN unless it is a number. ``choices`` are the allowed texts; empty allows any.
     """
 
     name: str
@@ -45,7 +45,7 @@ class FieldView:
 
     @property
     def default_value(self) -> object:
-        """What the default says, None for none and where it cannot be read."""
+        """The parsed default, None if there is none or it is unreadable."""
         try:
             return yaml.safe_load(self.default)
         except yaml.YAMLError:
@@ -53,9 +53,9 @@ class FieldView:
 
 
 def typed_value(text: str) -> object:
-    """Return what was typed: a list if it begins with a bracket, else the text; None of nothing.
+    """Parse typed text: a list if it begins with a bracket, else the text; None if empty.
 
-    :raises ValueError: its brackets and commas do not fit
+    :raises ValueError: its brackets or commas are malformed
     """
     text = text.strip()
     if not text.startswith('['):
@@ -78,9 +78,9 @@ class KindView:
 
 @dataclass(frozen=True)
 class Progress:
-    """How one robot is getting on: ``state`` is one of :mod:`mhri.tasks.base`.
+    """The progress of one robot: ``state`` is one of :mod:`mhri.tasks.base`.
 
-    ``said`` is what was worth a line since the start.
+    ``said`` are the lines reported since the start.
     """
 
     robot: str
@@ -92,7 +92,7 @@ class Progress:
 
 @dataclass(frozen=True)
 class RunView:
-    """A task under way: id of its goal, key and parameters (YAML) as they were given, robots."""
+    """A running task: id of its goal, its key and parameters (YAML) as given, its robots."""
 
     id: str
     key: str
@@ -102,7 +102,7 @@ class RunView:
 
 @dataclass(frozen=True)
 class TasksView:
-    """All of it at one instant; ``problem`` says why no task can be started, '' where one can.
+    """All tasks at one instant; ``problem`` is why no task can be started, '' if one can.
 
     ``marks`` are the names of the marks on the map.
     """
@@ -113,5 +113,5 @@ class TasksView:
     marks: Tuple[str, ...] = ()
 
     def label(self, key: str) -> str:
-        """Return what a task is called; an unknown one by its key."""
+        """Return the label of a task, its key if it is unknown."""
         return next((kind.label for kind in self.kinds if kind.key == key), key or 'task')

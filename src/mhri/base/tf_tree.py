@@ -1,32 +1,37 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The newest transform to each frame of tf, and where one frame lies in another."""
+"""The newest transform to each frame of tf, and the pose of one frame in another.
+
+Why not ``tf2_ros.Buffer``: it relies on the senders' clocks. With two of them 40 s apart it finds
+no path from ``map`` to a robot, and ignores a robot whose clock was set back. It keeps every frame
+ever sent (135 MB for 100,000), prints a line for each impossible transform, takes four times the
+CPU for a dozen robots (2.1 % of a core instead of 0.5 %), and needs 33 packages under Debian.
+"""
 import math
 from typing import Any, Dict, List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 
-from mhri.base.mocap import Pose
+from mhri.base.geometry import Pose
 from mhri.base.plausible import can_be, PLACE
 
-# What is no frame of a robot's any more: a stranger may make up names without an end.
-MOST_FRAMES, MOST_STEPS = 5000, 100
+# Maximum number of frames kept: a faulty node may send an unlimited number of names.
+MAX_FRAMES, MAX_STEPS = 5000, 100
 
-# Parent, x, y, z [m], quaternion x, y, z, w, and when it was heard [s], None: it never grows old.
+# Parent, x, y, z [m], quaternion x, y, z, w, and time of arrival [s], None if it never expires.
 _Edge = Tuple[str, Sequence[float], Optional[float]]
 
 
 def frame_name(name: str) -> str:
-    """Return the name of a frame without the slash that tf began with in its first years."""
+    """Return the name of a frame without the leading slash of early tf versions."""
     return name.strip('/')
 
 
 class OdometryFrames(NamedTuple):
-    """The frames that a robot's odometry names, '' where it names none.
+    """The frames in a robot's odometry messages, '' if empty.
 
-    ``base`` is the robot's own frame (``child_frame_id``), ``odometry`` the one that its pose is
-    given in. Some drivers, such as stage_ros, leave ``base`` empty: tf knows it, as the child of
-    the other.
+    ``base`` is the robot's own frame (``child_frame_id``), ``odometry`` the frame of its pose. Some
+    drivers, such as stage_ros, leave ``base`` empty: tf has it as the child of the other.
     """
 
     base: str = ''
@@ -34,7 +39,7 @@ class OdometryFrames(NamedTuple):
 
     @classmethod
     def of(cls, message: Any) -> 'OdometryFrames':
-        """Return those of an odometry message of any type."""
+        """Return the frames of an odometry message of any type."""
         header = getattr(message, 'header', None)
         return cls(frame_name(getattr(message, 'child_frame_id', '')),
                    frame_name(getattr(header, 'frame_id', '')))
@@ -46,32 +51,32 @@ class TfTree:
     def __init__(self) -> None:
         self._edges: Dict[str, _Edge] = {}
 
-    def see(self, parent: str, child: str, numbers: Sequence[float],
+    def add(self, parent: str, child: str, numbers: Sequence[float],
             at_s: Optional[float]) -> None:
-        """Take in a transform; beyond :data:`MOST_FRAMES` frames new ones are left out.
+        """Handle a transform; beyond :data:`MAX_FRAMES` frames new ones are left out.
 
-        :param numbers: x, y, z [m], quaternion x, y, z, w; used where they can be, see :meth:`find`
-        :param at_s: when it was heard, None for one that never grows old
+        :param numbers: x, y, z [m], quaternion x, y, z, w; checked by :meth:`find`
+        :param at_s: time of arrival, None if it never expires
         """
-        if child in self._edges or len(self._edges) < MOST_FRAMES:
+        if child in self._edges or len(self._edges) < MAX_FRAMES:
             self._edges[child] = (parent, numbers, at_s)
 
     def knows(self, frame: str) -> bool:
-        """Tell whether anything was said of a frame."""
+        """Return whether a transform to a frame was received."""
         return frame in self._edges or any(edge[0] == frame for edge in self._edges.values())
 
     def child_above(self, parent: str, frame: str) -> str:
-        """Return the child of a frame on the way up from another one; '' where it is not on it."""
+        """Return the child of ``parent`` on the path up from ``frame``, '' if it is not on it."""
         for name, edge in self._to_root(frame) or ():
             if edge is not None and edge[0] == parent:
                 return name
         return ''
 
     def find(self, frame: str, other: str) -> Optional[Tuple[Pose, Optional[float]]]:
-        """Return (pose of a frame in another one, when the oldest part was heard); None: unknown.
+        """Return (pose of a frame in another, time of its oldest part), None if unknown.
 
-        :param frame: the one that the pose is given in
-        :param other: the one that is looked for
+        :param frame: the frame of the result
+        :param other: the frame to look up
         """
         found = self.matrix(frame, other)
         if found is None:
@@ -81,11 +86,11 @@ class TfTree:
                     math.atan2(matrix[1, 0], matrix[0, 0])), at_s
 
     def matrix(self, frame: str, other: str) -> Optional[Tuple[np.ndarray, Optional[float]]]:
-        """Return the same with a matrix, which takes points of the other frame into this one."""
+        """Return the same with a matrix that transforms points of ``other`` into ``frame``."""
         up, down = self._to_root(frame), self._to_root(other)
         if up is None or down is None or up[-1][0] != down[-1][0]:
             return None
-        # What is above the first frame that both have in common plays no part.
+        # Frames above the first common one are irrelevant.
         common = {name for name, _ in up}
         shared = next(name for name, _ in down if name in common)
         times: List[float] = []
@@ -96,9 +101,9 @@ class TfTree:
         return matrix, min(times) if times else None
 
     def _to_root(self, frame: str) -> Optional[List[Tuple[str, Optional[_Edge]]]]:
-        """Return the frames from one up to its root with their transforms; None in a loop."""
+        """Return the frames from one up to its root with their transforms, None for a loop."""
         found: List[Tuple[str, Optional[_Edge]]] = []
-        while len(found) < MOST_STEPS:
+        while len(found) < MAX_STEPS:
             edge = self._edges.get(frame)
             found.append((frame, edge))
             if edge is None:
@@ -120,7 +125,7 @@ class TfTree:
 
 
 def _matrix(numbers: Sequence[float]) -> np.ndarray:
-    """Return the matrix of a transform, NaN where that cannot be."""
+    """Return the matrix of a transform, NaN if it is impossible."""
     x, y, z, w = numbers[3:]
     length = math.sqrt(x * x + y * y + z * z + w * w)
     if not (0.9 < length < 1.1 and all(can_be(PLACE, number) for number in numbers[:3])):
@@ -136,7 +141,7 @@ def _matrix(numbers: Sequence[float]) -> np.ndarray:
 def _inverse(matrix: np.ndarray) -> np.ndarray:
     """Return the inverse of a rigid transform (4, 4).
 
-    Not by ``np.linalg.inv``: the threads of OpenBLAS wait busily after each call, and took a core.
+    Not by ``np.linalg.inv``: the threads of OpenBLAS busy-wait after each call, and took a core.
     """
     inverse = np.eye(4)
     inverse[:3, :3] = matrix[:3, :3].T

@@ -1,31 +1,31 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the screen shows, as plain values: the only language between ros/ and gui/.
+"""The content of the screen as plain values: the only interface between ros/ and gui/.
 
-The host of the panel takes a :class:`PanelView` from the ROS side a few times a second on the GUI
-thread and hands it to the widgets, which draw it and know nothing else.
+The presenter of the panel gets a :class:`ScreenView` from the backend a few times a second on the
+GUI thread and passes it to the widgets, which draw it and need nothing else.
 """
 from dataclasses import dataclass
-from typing import Optional, Tuple
+from typing import Any, Mapping, NamedTuple, Optional, Tuple
 
+from mhri.base.accessories import Accessory
 from mhri.base.brake_view import BrakeView
-from mhri.base.mocap import Drift, Pose
+from mhri.base.geometry import Pose
+from mhri.base.limits import Velocity, ZERO
+from mhri.base.mocap import Drift
+from mhri.base.reasons import Reason
 from mhri.base.task_views import TaskView
 
 # Link states of a robot.
-WAITING = 'waiting'   # added, nothing heard yet
+WAITING = 'waiting'   # added, no message received yet
 LIVE = 'live'         # its odometry arrives
 SILENT = 'silent'     # connected, but nothing has arrived for more than a second
 GONE = 'gone'         # no connection: switched off, crashed or out of reach
-LINK_STATES = (WAITING, LIVE, SILENT, GONE)
 
 # States of the proof of a stop.
 PROOF_WAITING = 'waiting'            # zero sent, standstill not read yet
-PROOF_STOPPED = 'stopped'            # its own odometry reads standstill
-PROOF_NOT_CONFIRMED = 'not_confirmed'  # it moves on, moved again, or cannot be heard
-
-# What every row says while the gates are not heard.
-UNANSWERED = 'the drive service does not answer'
+PROOF_STOPPED = 'stopped'            # its own odometry reports standstill
+PROOF_NOT_CONFIRMED = 'not_confirmed'  # it moves on, moved again, or is silent
 
 # The stick of the screen itself, one of the sources of the mux.
 VIRTUAL_JOYSTICK = 'joy'
@@ -34,7 +34,22 @@ VIRTUAL_JOYSTICK = 'joy'
 ROS_STARTING = 'starting'
 ROS_NO_MASTER = 'no_master'
 ROS_CONNECTED = 'connected'
-ROS_CUT_OFF = 'cut_off'  # this program's node was ended or its name taken: nothing goes out
+ROS_CUT_OFF = 'cut_off'  # this program's node was ended or its name taken: nothing is published
+
+
+class Change(NamedTuple):
+    """A change: its robot ('' for all), kind and sentence.
+
+    The kind is "subject.what", a key of :data:`mhri.events.events.KINDS`; the last change of a
+    subject is the valid one. ``again`` is true if it only adds to a reported change. ``data`` are
+    the details for programs: plain JSON values by name.
+    """
+
+    robot: str
+    kind: str
+    text: str
+    again: bool = False
+    data: Mapping[str, Any] = {}
 
 
 @dataclass(frozen=True)
@@ -46,12 +61,31 @@ class ProofView:
 
 
 @dataclass(frozen=True)
+class AccessoryView:
+    """One accessory of a robot, or one of its other sensors.
+
+    :param spec: its row in the robot's type
+    :param known: whether the robot has reported its state
+    :param choice: the reported choice, '' for none
+    :param value: the reported values; the value of a sensor
+    :param stands: why it does not obey: a code of :mod:`mhri.base.reasons` or a sentence; '' if it
+        does. For a sensor: why it is silent
+    """
+
+    spec: Accessory
+    known: bool = False
+    choice: str = ''
+    value: Tuple[float, ...] = ()
+    stands: str = ''
+
+
+@dataclass(frozen=True)
 class LinkFigures:
     """The measurements of a robot's link; None if unknown.
 
     ``round_trip_s`` is the round-trip time [s], ``offset_s`` how far the robot's clock is ahead of
     the local one [s], ``loss`` the fraction of its odometry that did not arrive, in [0, 1].
-    ``thinned`` says in words what a radio that does not bear all lets through; '' while it does.
+    ``thinned`` describes the reduced data on a slow radio; '' while it carries everything.
     """
 
     round_trip_s: Optional[float] = None
@@ -62,37 +96,35 @@ class LinkFigures:
 
 @dataclass(frozen=True)
 class RobotView:
-    """One robot as its row and its tile show it.
+    """The content of a robot's row and tile.
 
-    ``number`` is its own for good, from 1; 0 if it has none.
+    ``number`` is its permanent number, from 1; 0 if it has none.
 
     ``age_s`` is the age of the newest odometry [s]; speeds are the robot's own odometry [m/s,
     rad/s], ``heading_rad`` its yaw in (-pi, pi], x and y in metres in its ``odom`` frame; None
-    if nothing was heard. ``battery`` is a fraction in [0, 1]. ``recording`` is true while a
-    bag of it is open. ``note`` is a remark on the link in words, e.g. "nothing for 3.2 s"; '' while
-    all is well. ``figures`` are the measurements of the link, ``slow`` is true if something needs
-    attention.
+    before the first message. ``battery`` is a fraction in [0, 1]. ``recording`` is true while a
+    bag of it is open. ``note`` is a remark on the link, e.g. "nothing for 3.2 s"; '' while all is
+    well. ``figures`` are the measurements of the link, ``slow`` is true if it needs attention.
 
-    What the gates say: ``driven`` is true while the velocity last sent to it is not zero,
-    ``guarded`` while its commands go through a guard on the robot, ``obeys`` is whom it obeys ('',
-    'operator', 'task'), ``stands`` why it is kept still (a code of
-    :data:`mhri.robots.gate_words.STANDS_WORDS`), ``also_commanded_by`` who else commands it,
-    ``odometry_follows`` is false where its odometry stood still while it was told to move,
-    ``waits`` is true while it waits for a centred stick, ``stop_latched`` once its guard has
-    confirmed the stop. ``brake`` is what its obstacle brake does. ``hardware_stop`` is true while
-    the robot's own emergency stop holds it, None if nothing reports it. ``power`` says in words
-    what was done to its motor power (:mod:`mhri.driving.motor_power`), '' for nothing,
-    ``offers_power`` whether it can be cut.
-    ``sent_mps`` and ``sent_rad_s`` are the velocity last sent to it (None: not known), ``reached``
-    is false while nothing on it takes commands.
+    From the drive: ``driven`` is true while the velocity last sent to it is nonzero, ``guarded``
+    while its commands go through a guard on the robot, ``obeys`` is its commander ('', 'operator',
+    'task'), ``stands`` why it is kept still (a code of :mod:`mhri.base.reasons`),
+    ``also_commanded_by`` are its other commanders, ``odometry_follows`` is false if its odometry
+    stood still despite a command to move, ``waits`` is true while it waits for a centred stick,
+    ``stop_latched`` once its guard has confirmed the stop. ``brake`` is the state of its obstacle
+    brake. ``hardware_stop`` is true while the robot's own emergency stop holds it, None if not
+    reported. ``power`` is the state of its motor power (a code of ``mhri/RobotDrive``),
+    ``offers_power`` whether it can be cut. ``sent`` is the velocity last sent to it (None if
+    unknown), ``reached`` is false while none of its nodes accepts commands, ``holonomic`` is true
+    if it can move sideways.
 
-    What the screen makes of it: ``asked`` is the operator's command [m/s, rad/s] where the robot
-    has done something else for a moment, else None; ``why`` says in a sentence why it stands though
-    the stick is held, '' for nothing. ``task`` is what it does by itself, None for nothing,
-    ``carry_on`` the name of the task that it could continue, '' for none.
+    Derived by the screen: ``asked`` is the operator's command if the robot has deviated from it for
+    a moment, else None; ``why`` is why it stands although the stick is held, or None. ``task`` is
+    its task, None for none, ``carry_on`` the name of the task that it could continue, '' for none.
+    ``accessories`` are its tools and other sensors, an :class:`AccessoryView` each.
 
-    Where other hosts are linked to it: ``ask`` is what its button asks for ("Ask for control"), ''
-    for nothing, ``said`` the last change of its control, or the last refusal.
+    If other hosts are linked to it: ``ask`` is the request of its button ("Ask for control"), ''
+    for none, ``said`` the last change of its control, or the last refusal.
     """
 
     name: str
@@ -103,6 +135,7 @@ class RobotView:
     note: str = ''
     linear_mps: Optional[float] = None
     angular_rad_s: Optional[float] = None
+    lateral_mps: Optional[float] = None
     heading_rad: Optional[float] = None
     x_m: Optional[float] = None
     y_m: Optional[float] = None
@@ -128,35 +161,35 @@ class RobotView:
     offers_power: bool = False
     hardware_stop: Optional[bool] = None
     number: int = 0
-    sent_mps: Optional[float] = None
-    sent_rad_s: Optional[float] = None
+    sent: Optional[Velocity] = None
+    holonomic: bool = False
     reached: bool = True
-    asked: Optional[Tuple[float, float]] = None
-    why: str = ''
+    asked: Optional[Velocity] = None
+    why: Optional[Reason] = None
     task: Optional[TaskView] = None
     carry_on: str = ''
     ask: str = ''
     said: str = ''
+    accessories: Tuple[AccessoryView, ...] = ()
 
     @property
     def on_task(self) -> bool:
-        """Whether it drives by itself, or is about to."""
+        """Whether it is not selected and has a task, running or about to start."""
         return not self.selected and (self.obeys == 'task' or self.task is not None)
 
     @property
     def changed_with(self) -> Tuple[str, str]:
-        """The states with which its numbers change at once, so that both say the same."""
+        """The states with which its numbers are updated at once, so that both agree."""
         return self.link, self.proof.state if self.proof else ''
 
 
 @dataclass(frozen=True)
 class StateView:
-    """What else is known about a robot while its tile is on show.
+    """Further data on a robot while its tile is visible.
 
-    ``ages`` are (name of a stream that is shown, age of its newest message [s], None if nothing
-    has come yet). ``figures`` are those of the link. ``captured`` is where motion capture sees the
-    robot, ``drift`` how far its odometry has drifted since the tile was opened; None if nobody
-    tracks it.
+    ``ages`` are (name of a displayed stream, age of its newest message [s], None before the first).
+    ``figures`` are those of the link. ``captured`` is the robot's pose by motion capture, ``drift``
+    the drift of its odometry since the tile was opened; None if it is not tracked.
     """
 
     ages: Tuple[Tuple[str, Optional[float]], ...] = ()
@@ -167,7 +200,7 @@ class StateView:
 
 @dataclass(frozen=True)
 class HeardView:
-    """What the voice node heard last, the command it understood ('' for none), or why none."""
+    """The last words of the voice node, the recognised command ('' for none), or why none."""
 
     text: str
     command: str = ''
@@ -177,11 +210,11 @@ class HeardView:
 
 @dataclass(frozen=True)
 class DeviceView:
-    """What an input node says of its device.
+    """The state of a device, reported by its input node.
 
-    ``name`` is the name of the connected device, '' if there is none; ``note`` says why there is
-    none and what to do, or what the device waits for; both are '' if the node cannot tell.
-    ``kind`` is e.g. 'pad'; ``there`` are the names of all that could be chosen.
+    ``name`` is the name of the connected device, '' for none; ``note`` is why there is none and the
+    remedy, or what the device waits for; both are '' if unknown. ``kind`` is e.g. 'pad'; ``there``
+    are the names of all devices that could be chosen.
     """
 
     source: str
@@ -192,37 +225,56 @@ class DeviceView:
 
     @property
     def absent(self) -> bool:
-        """Whether there is certainly no device."""
+        """Whether the device is known to be missing."""
         return bool(self.note and not self.name)
 
 
 @dataclass(frozen=True)
 class ControlView:
-    """Who is in control: this screen (``ours``), or who, e.g. "panel on lab-pc2 since 14:02"."""
+    """The screen in control: this one (``ours``), or another, e.g. "panel on lab-pc2".
+
+    ``since`` is a local time as text, '' if unknown.
+    """
 
     ours: bool = True
-    who: str = ''
+    who: str = 'somebody else'
+    since: str = ''
+
+    @property
+    def words(self) -> str:
+        """The screen in control, and since when: "panel on lab-pc2 since 14:02"."""
+        return self.who + (' since ' + self.since if self.since else '')
+
+
+class FlagView(NamedTuple):
+    """A mark of the session on the map: its words, its place [m] and the frame of that."""
+
+    label: str
+    x_m: float
+    y_m: float
+    frame: str
 
 
 @dataclass(frozen=True)
-class PanelView:
-    """Everything the panel shows at one instant.
+class ScreenView:
+    """The whole content of the panel at one instant.
 
-    ``mode`` is the source in force as the mux last said (None: the mux has not been heard);
-    ``sources`` are (name, label) of the drop-down in order, each called by its device where that is
-    known; ``devices`` are what is known of these. ``stop_all`` is true while everything
-    is stopped. ``limits`` are the operator's speed limits in force [m/s, rad/s]. ``status`` is the
-    one line at the bottom, never empty; ``status_level`` one of 'calm', 'attention', 'stopped'.
-    ``together`` is true while all selected robots are held to the pace of the slowest, ``pace``
-    says in words what that is, ``brake`` while the obstacle brake is on, ``slowed`` is true while a
-    slow link holds them back.
-    ``camera_bits_per_s`` is what all pictures on show take of the network. ``heard`` is what the
-    voice node heard last, None before that. ``control`` is who drives, ``answers`` is false while
-    the gates are not heard, ``stop_taken`` true once they have said that the stop is in force.
-    ``advice`` says what keeps the source that drives from doing so, and the remedy; '' for nothing.
-    ``dead_man`` is false while the dead-man buttons of pads need not be held. ``asked`` is what the
-    mux commands now [m/s, rad/s], ``waits_for`` its word on what it waits for, ``pushed`` whether
-    the stick of the source that drives is held.
+    ``mode`` is the active source (None while the drive is silent); ``sources`` are (name, label) of
+    the drop-down in order, each labelled with its device if known; ``devices`` are the states of
+    these. ``stop_all`` is true while everything is stopped, ``stop_refused`` if ``stop_note``
+    reports a refusal. ``limits`` are the operator's speed limits in force [m/s, rad/s]. ``status``
+    is the status line at the bottom, never empty; ``status_level`` one of 'calm', 'attention',
+    'stopped'.
+    ``together`` is true while all selected robots are limited to the pace of the slowest, ``pace``
+    describes that, ``brake`` is true while the obstacle brake is on, ``slowed`` while a slow link
+    slows them down.
+    ``camera_bits_per_s`` is the network load of all visible pictures. ``heard`` is the last result
+    of the voice node, None before the first. ``control`` is the screen in control, ``answers`` is
+    false while the drive is silent, ``stop_taken`` true once it has confirmed the stop.
+    ``advice`` is why the active source cannot drive, and the remedy, or None.
+    ``dead_man`` is false while the dead-man buttons of pads need not be held. ``asked`` is the
+    operator's current command [m/s, rad/s], ``waits_for`` the code of what it waits for, ``pushed``
+    whether the stick of the active source is held. ``flags`` are the marks of the session.
     """
 
     ros: str = ROS_STARTING
@@ -231,6 +283,7 @@ class PanelView:
     mode: Optional[str] = None
     stop_all: bool = False
     stop_note: str = ''
+    stop_refused: bool = False
     limits: Tuple[float, float] = (0.5, 1.5)
     together: bool = False
     brake: bool = False
@@ -240,12 +293,13 @@ class PanelView:
     status_level: str = 'calm'
     robots: Tuple[RobotView, ...] = ()
     camera_bits_per_s: float = 0.0
-    advice: str = ''
+    advice: Optional[Reason] = None
     dead_man: bool = True
     heard: Optional[HeardView] = None
     control: ControlView = ControlView()
     answers: bool = True
     stop_taken: bool = True
-    asked: Tuple[float, float] = (0.0, 0.0)
+    asked: Velocity = ZERO
     waits_for: str = ''
     pushed: bool = False
+    flags: Tuple[FlagView, ...] = ()

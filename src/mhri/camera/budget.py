@@ -1,12 +1,12 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""How much of the network each camera may have: driven robots first, thumbnails last.
+"""Allocates the network to the cameras: driven robots first, thumbnails last.
 
-Within a limit [bit/s] a stream is unlimited, thinned (one picture at a time over a connection that
-is then closed, :mod:`mhri.camera.ros.samples`) or paused. What matters least is thinned first:
-thumbnails down to one picture in five seconds, then the picture looked at down to
-:data:`LOOKED_AT_LEAST_HZ`; then thumbnails are paused, the most expensive first. The picture of a
-driven robot is never touched, even if it alone exceeds the limit.
+To keep a limit [bit/s], a stream is unlimited, thinned (one picture at a time over a connection
+that is then closed, :mod:`mhri.camera.ros.samples`) or paused. The least important is thinned
+first: thumbnails down to one picture in five seconds, then the enlarged picture down to
+:data:`LOOKED_AT_MIN_HZ`; then thumbnails are paused, the most expensive first. The picture of a
+driven robot is never limited, even if it alone exceeds the limit.
 """
 from dataclasses import dataclass, replace
 import math
@@ -17,35 +17,35 @@ LOOKED_AT = 'looked at'
 REST = 'rest'
 IMPORTANCES = (DRIVEN, LOOKED_AT, REST)
 
-#: rates of a thinned picture [Hz]; above them a connection for each costs more than it saves
+#: rates of a thinned stream [Hz]; at higher ones a connection per picture costs more than it saves
 SAMPLED_HZ = (5.0, 2.0, 1.0, 0.5, 0.2)
-LOOKED_AT_LEAST_HZ = 5.0
-# What asking for one picture costs [bit] (measured: 3.7 to 5.3 kB), including the part of the next
-# one sent before the publisher learns that nobody listens any more.
+LOOKED_AT_MIN_HZ = 5.0
+# Overhead of requesting one picture [bit] (measured: 3.7 to 5.3 kB), including the part of the next
+# one sent before the publisher detects the end of the connection.
 _ASKING_BITS = 4e4
 _SENT_FOR_ONE = 1.1
 # Thinning must save at least half.
 _SAVES = 2.0
-# So that rates do not flap: figures are rounded up to so many steps per octave, one that falls by
-# less than this part stays as it was, and a better rate must fit for this long.
+# Hysteresis of the rates: figures are rounded up to this many steps per octave, one that falls by
+# less than this fraction is kept, and a better rate must fit for this long [s].
 _IN_OCTAVE = 8
 _FALLS = 0.2
 _CALM_S = 5.0
-# Until a stream has been measured: VGA as jpeg.
+# Assumed until a stream has been measured: VGA as jpeg.
 _TYPICAL_BITS = 3.3e5
 _TYPICAL_HZ = 30.0
-# A raw picture is at least so many times larger than the same picture as jpeg.
+# A raw picture is at least this many times larger than the same picture as jpeg.
 _COMPRESSED = 8.0
 
 
 @dataclass(frozen=True)
 class Grant:
-    """What the feed of one picture may do.
+    """The rate and transport granted to the feed of one picture.
 
-    ``rate_hz``: most pictures per second [Hz], None: as they come, 0: none, and no connection.
+    ``rate_hz``: maximum rate [Hz], None: unlimited, 0: no pictures and no connection.
     ``sampled``: thinned on the network, too: one picture at a time, each over its own connection;
-    else all arrive and only this many are decoded. ``lighter``: the best transport available,
-    whatever the operator chose. ``words``: what to tell the operator, '' if nothing is held back.
+    else all are received and only this many decoded. ``lighter``: use the best transport available,
+    whatever the operator chose. ``words``: a note for the operator, '' if nothing is limited.
     """
 
     rate_hz: Optional[float] = None
@@ -59,11 +59,10 @@ UNSEEN = Grant(0.0)
 
 
 class Figures(NamedTuple):
-    """What is known about a stream.
+    """Measured figures of a stream.
 
-    ``bits``: size of a message [bit]; ``native_hz``: how often the camera sends [Hz]; None before
-    they were measured, 0 for a silent camera. ``heavy``: it comes raw, by choice, though it could
-    come compressed.
+    ``bits``: size of a message [bit]; ``native_hz``: rate of the camera [Hz]; both are None until
+    measured, 0 for a silent camera. ``heavy``: raw by choice, though available compressed.
     """
 
     bits: Optional[float] = None
@@ -75,8 +74,8 @@ class Figures(NamedTuple):
 class Picture:
     """One picture with a place on the screen, and the :class:`Figures` of its stream.
 
-    ``name``: the robot's; ``importance``: one of :data:`IMPORTANCES`; ``visible``: false if nobody
-    can see it.
+    ``name``: the robot's; ``importance``: one of :data:`IMPORTANCES`; ``visible``: false if
+    hidden.
     """
 
     name: str
@@ -87,14 +86,14 @@ class Picture:
     heavy: bool = False
 
     def cost(self, rate_hz: float) -> float:
-        """Return the load on the network [bit/s] at a rate [Hz, infinite: as it comes]."""
+        """Return the load on the network [bit/s] at a rate [Hz, infinite: unlimited]."""
         bits = _TYPICAL_BITS if self.bits is None else self.bits
         if math.isinf(rate_hz):
             return bits * (_TYPICAL_HZ if self.native_hz is None else self.native_hz)
         return (_SENT_FOR_ONE * bits + _ASKING_BITS) * rate_hz
 
     def steps(self, thumbnail_hz: float) -> List[float]:
-        """Return its possible rates, best first: as it comes, then those that save enough."""
+        """Return its possible rates, best first: unlimited, then rates that save enough."""
         full = self.cost(math.inf)
         most = min(thumbnail_hz if self.importance == REST else math.inf, SAMPLED_HZ[0])
         rates = [rate for rate in sorted({most, *SAMPLED_HZ}, reverse=True) if rate <= most]
@@ -103,7 +102,7 @@ class Picture:
 
 @dataclass(frozen=True)
 class Plan:
-    """What every picture may have.
+    """The rates of all pictures.
 
     ``grants``: {name: :class:`Grant`}; ``bits_per_s``: their planned load together; ``note``: a
     sentence if the limit cannot be kept, else ''.
@@ -116,7 +115,7 @@ class Plan:
 
 @dataclass
 class _Held:
-    """A picture's rate now [Hz], and since when it could have more [s]; None: it could not."""
+    """A picture's present rate [Hz], and the time since which a better one fits [s], or None."""
 
     importance: str
     rate_hz: float
@@ -124,7 +123,7 @@ class _Held:
 
 
 class BudgetPlanner:
-    """Plans again and again, so that rates drop at once and rise slowly."""
+    """Plans the rates repeatedly, so that they drop at once and rise slowly."""
 
     def __init__(self) -> None:
         self._held: Dict[str, _Held] = {}
@@ -137,14 +136,14 @@ class BudgetPlanner:
 
         :param pictures: each name once
         :param limit_bits_per_s: load allowed for all together; 0: no limit
-        :param thumbnail_hz: greatest rate for robots neither driven nor looked at
+        :param thumbnail_hz: maximum rate of the pictures of :data:`REST`
         :param now: [s, monotonic]
         """
         pictures = list(pictures)
         seen = [self._steady(picture) for picture in pictures if picture.visible]
         if any(None in self._figures.get(picture.name, ())
                and None not in (picture.bits, picture.native_hz) for picture in seen):
-            # A plan made on a guess is made anew at once.
+            # Discard a plan based on assumed figures at once.
             self._held = {}
         self._figures = {picture.name: (picture.bits, picture.native_hz) for picture in seen}
         if limit_bits_per_s <= 0.0:
@@ -166,9 +165,9 @@ class BudgetPlanner:
                        native_hz=_steady(picture.native_hz, native_hz))
 
     def _lightened(self, seen: List[Picture], limit: float, thumbnail_hz: float) -> List[Picture]:
-        """Return the pictures as they will come: a raw one that would be thinned comes compressed.
+        """Return the pictures with raw ones compressed that would otherwise be thinned.
 
-        It stays compressed until its robot is driven, or nothing is limited any more.
+        A picture stays compressed until its robot is driven, or nothing is limited any more.
         """
         rates = _targets(seen, limit, thumbnail_hz)
         self._light = {
@@ -181,7 +180,7 @@ class BudgetPlanner:
 
     def _calm(self, seen: Sequence[Picture], limit: float, thumbnail_hz: float,
               now: float) -> Dict[str, float]:
-        """Return the rates: down at once, up once there has been room for a while."""
+        """Return the rates: lowered at once, raised after a better one has fitted for a while."""
         most = _targets(seen, limit, thumbnail_hz)
         held = {}
         for picture in seen:
@@ -201,23 +200,23 @@ class BudgetPlanner:
         return {name: one.rate_hz for name, one in held.items()}
 
     def _grant(self, picture: Picture, rate_hz: float, thumbnail_hz: float) -> Grant:
-        """Return a rate as the :class:`Grant` for a feed."""
+        """Return the :class:`Grant` of a rate."""
         lighter = picture.name in self._light
-        wished_hz = thumbnail_hz if picture.importance == REST else math.inf
+        wanted_hz = thumbnail_hz if picture.importance == REST else math.inf
         words = ''
         if rate_hz == 0.0:
             words = 'paused: camera budget'
-        elif rate_hz < wished_hz:
+        elif rate_hz < wanted_hz:
             words = 'thinned to {:g} Hz: camera budget'.format(rate_hz)
         elif lighter:
             words = 'compressed: camera budget'
         if math.isinf(rate_hz):
-            return Grant(None if math.isinf(wished_hz) else wished_hz, False, lighter, words)
+            return Grant(None if math.isinf(wanted_hz) else wanted_hz, False, lighter, words)
         return Grant(rate_hz, rate_hz > 0.0, lighter, words)
 
 
 def _steady(figure: Optional[float], before: Optional[float]) -> Optional[float]:
-    """Return a figure rounded up; it stays as before if it is only a little less."""
+    """Return a figure rounded up, or the previous value if it has fallen only a little."""
     if not figure:
         return figure
     if before is not None and (1.0 - _FALLS) * before <= figure <= before:
@@ -231,10 +230,10 @@ def _targets(seen: Sequence[Picture], limit: float, thumbnail_hz: float) -> Dict
                                for importance in IMPORTANCES)
     rates = {picture.name: math.inf for picture in driven}
     left = limit - sum(picture.cost(math.inf) for picture in driven)
-    # Keeping thumbnails alive comes before giving the picture looked at more than its least.
+    # Thumbnails at their minimum take precedence over an enlarged picture above its minimum.
     alive = sum(picture.cost(picture.steps(thumbnail_hz)[-1]) for picture in rest)
     enough = sum(min(picture.cost(rate) for rate in picture.steps(thumbnail_hz)
-                     if rate >= LOOKED_AT_LEAST_HZ) for picture in looked_at)
+                     if rate >= LOOKED_AT_MIN_HZ) for picture in looked_at)
     rates.update(_share(looked_at, max(left - alive, min(left, enough)), thumbnail_hz))
     left -= sum(picture.cost(rates[picture.name]) for picture in looked_at)
     rates.update(_share(rest, left, thumbnail_hz))
@@ -243,9 +242,9 @@ def _targets(seen: Sequence[Picture], limit: float, thumbnail_hz: float) -> Dict
 
 def _share(pictures: Sequence[Picture], bits_per_s: float,
            thumbnail_hz: float) -> Dict[str, float]:
-    """Share out bits: cheap pictures get all they can use, expensive ones get equal parts.
+    """Distribute bits: cheap pictures get all they can use, expensive ones get equal parts.
 
-    If even the least rates do not fit, pause the most expensive; of equals the last.
+    If even the minimum rates do not fit, pause the most expensive, of equal ones the last.
     """
     steps = {picture.name: picture.steps(thumbnail_hz) for picture in pictures}
     least = {picture.name: picture.cost(steps[picture.name][-1]) for picture in pictures}
@@ -265,7 +264,7 @@ def _share(pictures: Sequence[Picture], bits_per_s: float,
 
 
 def _note(seen: Sequence[Picture], limit: float) -> str:
-    """Say that the driven robots' pictures alone exceed the limit; '' if they do not."""
+    """Return a note if the driven robots' pictures alone exceed the limit, else ''."""
     driven = sum(picture.cost(math.inf) for picture in seen if picture.importance == DRIVEN)
     if limit <= 0.0 or driven <= limit:
         return ''

@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Compressed colour pictures (jpeg, png) turned into RGB of the size they are shown at.
+"""Decodes compressed colour pictures (jpeg, png) to RGB at the displayed size.
 
-The formats are those of image_transport's ``compressed`` plugin: 'jpeg' or 'png' alone, as single
-cameras write it, or '<encoding>; jpeg compressed [bgr8]'. The first bytes of the data decide; the
-format only tells of a Bayer mosaic, and of an unusual order of a png's colours.
+The formats are those of image_transport's ``compressed`` plugin: 'jpeg' or 'png' alone, as some
+cameras write it, or '<encoding>; jpeg compressed [bgr8]'. The first bytes of the data identify the
+codec; the format is only used to detect a Bayer mosaic, and an unusual order of a png's colours.
 """
 import struct
 from typing import Optional, Tuple
@@ -12,8 +12,9 @@ from typing import Optional, Tuple
 import numpy as np
 
 from mhri.base.opencv import cv2
-from mhri.camera.bayer import bayer_encoding, debayered
-from mhri.camera.images import check_size, Data, fit, FrameError, Size
+from mhri.base.wire import Data
+from mhri.camera.image_message import RawImage
+from mhri.camera.images import check_size, fit, FrameError, Size
 from mhri.camera.jpeg import decode_jpeg
 
 _PNG = b'\x89PNG\r\n\x1a\n'
@@ -29,36 +30,41 @@ def decode_compressed(fmt: str, data: Data,
                       view: Optional[Size] = None) -> Tuple[np.ndarray, Size, str]:
     """Decode the data of a ``sensor_msgs/CompressedImage``.
 
-    A jpeg has no checksum: damage in its middle shows as a smear and is not an error; a picture
-    that ends early is.
+    A jpeg has no checksum: damage in its middle shows as a smear and is not an error; a truncated
+    picture is.
 
     :param fmt: its ``format``
     :param data: its ``data``, bytes-like
     :param view: room for the picture (width, height) [pixels], None for the full size
     :returns: (rgb uint8 (h, w, 3), (width, height) as sent, 'jpeg' or 'png')
-    :raises FrameError: not a jpeg or png, cut off, corrupted, or of an absurd size
+    :raises FrameError: not a jpeg or png, truncated, corrupted, or of an absurd size
     """
     kind, full = read_size(data, fmt)
     target = fit(full, view)
-    rgb = _decode_mosaic(fmt, kind, data)
-    if rgb is None:
-        rgb = _decode_colours(fmt, kind, data, full, _factor(full, target) if kind == 'jpeg' else 1)
-    if (rgb.shape[1], rgb.shape[0]) != target:
-        rgb = cv2.resize(rgb, target, interpolation=interpolation(rgb, target))
-    return rgb, full, kind
+    rgb = _decode_colours(fmt, kind, data, full, _factor(full, target) if kind == 'jpeg' else 1)
+    return reduced(rgb, target), full, kind
 
 
-def _decode_mosaic(fmt: str, kind: str, data: Data) -> Optional[np.ndarray]:
-    """Return the RGB picture of a compressed Bayer mosaic; None if it is not one.
+def read_mosaic(fmt: str, data: Data) -> Optional[RawImage]:
+    """Return the Bayer mosaic of a compressed picture as a raw picture; None if it is not one.
 
-    Decode it at full size: reduced, the colours of its pixels would mix into grey.
+    image_transport's ``compressed`` plugin compresses a mosaic as a grey picture, and only the
+    format shows it, e.g. 'bayer_rggb8; jpeg compressed ' (compressed_publisher.cpp: a pattern does
+    not count as colour); its subscriber passes the mosaic on. It is decoded at full size: reduction
+    would mix the colours of its pixels into grey.
+
+    :raises FrameError: as :func:`decode_compressed`
     """
-    encoding = bayer_encoding(fmt)
-    if encoding is None:
+    encoding = fmt.partition(';')[0].strip()
+    if not encoding.startswith('bayer_'):
         return None
+    kind, (width, height) = read_size(data, fmt)
     mosaic = decode_with_opencv(kind, data, cv2.IMREAD_UNCHANGED)
-    # Some publishers make the colours themselves, and leave the sensor's encoding in the format.
-    return debayered(mosaic, encoding) if mosaic.ndim == 2 else None
+    if mosaic.ndim > 2:
+        # Some publishers convert it to colour themselves, but leave the encoding in the format.
+        return None
+    encoding = '{}{}'.format(encoding.rstrip('0123456789'), 8 * mosaic.itemsize)
+    return RawImage(height, width, encoding, 0, 0, mosaic.tobytes())
 
 
 def _decode_colours(fmt: str, kind: str, data: Data, full: Size, factor: int) -> np.ndarray:
@@ -68,37 +74,39 @@ def _decode_colours(fmt: str, kind: str, data: Data, full: Size, factor: int) ->
         # Ignore the orientation in the data (EXIF): a robot's camera is shown as it is mounted.
         rgb = decode_with_opencv(kind, data, _REDUCED[factor] | cv2.IMREAD_IGNORE_ORIENTATION)
         if kind == 'jpeg' or not _is_rgb_order(fmt):
-            # In place: a fresh array of this size costs ten times as much, in page faults.
+            # In place: a new array of this size takes ten times as long, in page faults.
             cv2.cvtColor(rgb, cv2.COLOR_BGR2RGB, rgb)
     return rgb
 
 
 def _is_rgb_order(fmt: str) -> bool:
-    """Tell whether the writer of a png handed over RGB where the coder takes BGR.
+    """Return whether a png was written from RGB although the encoder expects BGR.
 
-    The plugin assumes so for a png of 'rgb8' whose format does not say 'compressed bgr8'; it trusts
-    a jpeg's own header, whatever the format says.
+    The plugin assumes so for a png of 'rgb8' without 'compressed bgr8' in the format; for a jpeg it
+    uses the picture's own header, whatever the format is.
     """
     encoding, _, rest = fmt.partition(';')
     return encoding.startswith('rgb') and 'compressed' in rest and 'bgr' not in rest
 
 
 def _factor(full: Size, target: Size) -> int:
-    """Return how many times smaller a jpeg can be decoded: 1, 2, 4 or 8."""
+    """Return the factor by which a jpeg can be reduced in decoding: 1, 2, 4 or 8."""
     return next(factor for factor in sorted(_REDUCED, reverse=True)
                 if factor == 1 or (target[0] * factor <= full[0] and target[1] * factor <= full[1]))
 
 
-def interpolation(picture: np.ndarray, target: Size) -> int:
-    """Return the cheapest interpolation that does not flicker at this reduction."""
-    way: int = cv2.INTER_AREA if picture.shape[1] >= 2 * target[0] else cv2.INTER_LINEAR
-    return way
+def reduced(picture: np.ndarray, target: Size) -> np.ndarray:
+    """Return a picture at a smaller size, by the cheapest method that does not flicker."""
+    if picture.shape[1::-1] == target:
+        return picture
+    way = cv2.INTER_AREA if picture.shape[1] >= 2 * target[0] else cv2.INTER_LINEAR
+    return cv2.resize(picture, target, interpolation=way)
 
 
 def decode_with_opencv(what: str, data: Data, flags: int) -> np.ndarray:
     """Call ``cv2.imdecode``; return its array.
 
-    :raises FrameError: OpenCV could make no picture of the data
+    :raises FrameError: OpenCV cannot decode the data
     """
     try:
         picture = cv2.imdecode(np.frombuffer(data, np.uint8), flags)
@@ -113,8 +121,8 @@ def decode_with_opencv(what: str, data: Data, flags: int) -> np.ndarray:
 def read_size(data: Data, fmt: str = '') -> Tuple[str, Size]:
     """Return ('jpeg' or 'png', (width, height)) from the header of a coded picture.
 
-    :param fmt: what the message calls it, for the error's text
-    :raises FrameError: neither of the two, cut off, or of an absurd size
+    :param fmt: its format in the message, for the error's text
+    :raises FrameError: neither of the two, truncated, or of an absurd size
     """
     if not len(data):
         raise FrameError('{}: empty'.format(fmt or 'compressed image'))
@@ -159,8 +167,8 @@ def _jpeg_size(data: Data) -> Size:
     if size is None:
         raise FrameError('jpeg: corrupted, it does not say its size')
     check_size('jpeg', *size)
-    # Within the picture data 0 or a restart marker always follows an 0xff, so the end marker cannot
-    # be mistaken; some cameras pad behind it.
+    # Within the picture data a 0 or a restart marker always follows an 0xff, so the end marker is
+    # unambiguous; some cameras add padding after it.
     if bytes(data).rfind(b'\xff\xd9', place) < 0:
         raise FrameError('jpeg: truncated at {} bytes'.format(len(data)))
     return size

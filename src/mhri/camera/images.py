@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Pictures as plain values, from a camera feed to the screen."""
 from dataclasses import dataclass
-from typing import Optional, Tuple, Union
+from typing import Optional, Tuple
 
 import numpy as np
 
@@ -10,14 +10,12 @@ import numpy as np
 RGB = 'rgb'
 DEPTH = 'depth'
 
-#: a message or a part of it, as it came over the wire
-Data = Union[bytes, bytearray, memoryview]
 #: width and height [pixels]
 Size = Tuple[int, int]
 #: the nearest and the farthest [m]
 Range = Tuple[float, float]
 
-# 8K video has 33 million pixels. A larger claim counts as a corrupted header, so that no frame can
+# 8K video has 33 million pixels. A larger size counts as a corrupted header, so that no frame can
 # make the program allocate gigabytes.
 MAX_PIXELS = 40_000_000
 # A picture older than this is not live [s].
@@ -25,12 +23,12 @@ OLD_AFTER_S = 1.0
 
 
 class FrameError(ValueError):
-    """A picture that cannot be decoded; the text says what it claims to be and what is wrong."""
+    """A picture cannot be decoded; the text names its declared format and the fault."""
 
 
 @dataclass(frozen=True)
 class Frame:
-    """One decoded picture, at the size it is shown at.
+    """One decoded picture, at its displayed size.
 
     ``kind`` is 'rgb' or 'depth'; ``rgb`` a C-contiguous uint8 array (h, w, 3) in RGB order, ready
     to show (depth: coloured already). ``depth_m``: float32 (h, w), distance along the optical axis
@@ -51,14 +49,14 @@ class Frame:
 class StreamStatus:
     """The state of a camera's stream.
 
-    ``transport`` says what arrives: 'jpeg', 'png', 'raw', 'compressedDepth png' ...; '' before the
-    first picture. ``rate_hz`` and ``bits_per_s`` are what the network brought in the last 2 s;
-    ``age_s`` the age of the newest good picture [s], None before it. ``shown`` counts the pictures
-    taken, ``bad`` those that could not be decoded. ``problem`` says what was wrong with the last
-    bad one, or why no picture comes; '' if there is nothing to say. ``stale``: the newest good
-    picture is older than the newest bad one, or than ``old_after_s`` [s], which is longer for a
-    picture that is held back. ``thinned`` says that it is held back, and why; '' if it is not.
-    ``detail`` is the problem in the words of ROS, '' where it has none.
+    ``transport`` is the received format: 'jpeg', 'png', 'raw', 'compressedDepth png' ...; '' before
+    the first picture. ``rate_hz`` and ``bits_per_s`` are measured on the network over the last 2 s;
+    ``age_s`` is the age of the newest good picture [s], None before the first. ``shown`` counts the
+    pictures taken, ``bad`` undecodable ones. ``problem`` is the fault of the last bad picture, or
+    the reason why no picture is received; '' without a problem. ``stale``: the newest good picture
+    is older than the newest bad one, or than ``old_after_s`` [s], which is longer for a limited
+    stream. ``thinned`` is the limit and its reason, '' without a limit. ``detail`` is the problem
+    in the terms of ROS, or ''.
     """
 
     transport: str = ''
@@ -75,9 +73,9 @@ class StreamStatus:
 
 
 def check_size(what: str, width: int, height: int) -> None:
-    """Refuse a picture without pixels, or with more than :data:`MAX_PIXELS`.
+    """Check that a picture has pixels, but at most :data:`MAX_PIXELS`.
 
-    :param what: what the picture calls itself, for the error's text
+    :param what: the declared format, for the error's text
     :raises FrameError: the size is absurd
     """
     if width <= 0 or height <= 0 or width * height > MAX_PIXELS:
@@ -85,7 +83,7 @@ def check_size(what: str, width: int, height: int) -> None:
 
 
 def fit(full: Size, view: Optional[Size]) -> Size:
-    """Return the size at which to show a picture: within the view, same shape, never enlarged.
+    """Return the size at which to show a picture: within the view, same aspect, never enlarged.
 
     :param full: (width, height) of the picture [pixels], > 0
     :param view: (width, height) of the room for it [pixels], or None for the full size

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The range of a scale; it follows the measured values without flicker."""
+"""The range of a scale that follows the measured values without flicker."""
 import math
 from typing import Optional
 
@@ -15,13 +15,13 @@ _PERCENT = (2, 98)
 class RangeFollower:
     """From the 2nd to the 98th percentile, smoothed over :data:`SMOOTH_S` seconds.
 
-    :param least_span: least width of the range
-    :param least: lower end of the range, at least
+    :param min_span: minimum width of the range
+    :param minimum: minimum of the lower end
     """
 
-    def __init__(self, least_span: float, least: float = -math.inf) -> None:
-        self._least_span = least_span
-        self._least = least
+    def __init__(self, min_span: float, minimum: float = -math.inf) -> None:
+        self._min_span = min_span
+        self._minimum = minimum
         self._range: Optional[Range] = None
         self._at = 0.0
 
@@ -35,11 +35,11 @@ class RangeFollower:
         if len(values) == 0:
             return self._range
         low, high = (float(value) for value in np.percentile(values, _PERCENT))
-        # Large values have no digits left for a narrow range.
-        span = max(self._least_span, 1e-6 * max(abs(low), abs(high)))
+        # Large values have too little precision for a narrow range.
+        span = max(self._min_span, 1e-6 * max(abs(low), abs(high)))
         if high - low < span:
             half = span / 2
-            middle = max((low + high) / 2, self._least + half)
+            middle = max((low + high) / 2, self._minimum + half)
             low, high = middle - half, middle + half
         if self._range is not None:
             weight = 1.0 - math.exp(-max(0.0, now - self._at) / SMOOTH_S)

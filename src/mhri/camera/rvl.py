@@ -3,26 +3,27 @@
 """RVL, the lossless depth code of A. D. Wilson, "Fast Lossless Depth Image Compression" (2017).
 
 The pixels are alternating runs of zeros and of others: (count of zeros, count of others, the
-others), the others as the zigzag difference to the one before. Every number takes three bits per
+others), the others as zigzag-encoded differences to their predecessors. Numbers have three bits per
 nibble, the lowest first, with 8 added while more follow; nibbles fill 32-bit little-endian words
-from the top. This module reads and writes all numbers at once, with numpy; it only follows the
-heads of the runs one by one.
+from the top. This module reads and writes all numbers at once, with numpy; only the heads of the
+runs are read one by one.
 """
 from typing import Tuple
 
 import numpy as np
 
 
-from mhri.camera.images import Data, FrameError
+from mhri.base.wire import Data
+from mhri.camera.images import FrameError
 
-_LONGEST = 10  # nibbles of a number below 2^30
+_MAX_DIGITS = 10  # nibbles of a number below 2^30
 _PART = 65_536  # nibbles read at once, few enough to stay in the cache
 
 
 def _pairs() -> np.ndarray:
-    """Return the value of a number's last nibble with the one before it: [16 * last + before].
+    """Return the value of a number's last nibble with its predecessor: [16 * last + before].
 
-    A nibble below 8 before it is the end of another number.
+    A predecessor below 8 belongs to the previous number.
     """
     last, before = np.divmod(np.arange(256, dtype=np.int32), 16)
     return np.where(before >= 8, (last << 3) | (before & 7), last).astype(np.int32)
@@ -45,7 +46,7 @@ def decode_rvl(payload: Data, pixels: int) -> np.ndarray:
             or end > len(numbers):
         raise FrameError('rvl: truncated or corrupted, its runs do not make {} pixels'.format(
             pixels))
-    # In place if possible: fresh arrays of this size cost more than the sums.
+    # In place if possible: allocating arrays of this size takes longer than the sums.
     values = numbers[:end]
     values[heads] = values[heads + 1] = 0
     signs = values & 1
@@ -53,7 +54,7 @@ def decode_rvl(payload: Data, pixels: int) -> np.ndarray:
     values >>= 1
     values ^= signs
     np.cumsum(values, out=values)
-    # Where each number goes; the counts go behind the last pixel.
+    # The place of each number; the counts go after the last pixel.
     places = np.repeat(np.cumsum(zeros + others) - others - heads - 2, others + 2)
     places += np.arange(end)
     places[heads] = places[heads + 1] = pixels
@@ -69,19 +70,19 @@ def _read_numbers(payload: Data) -> np.ndarray:
     """
     words = np.frombuffer(payload, '<u4', len(payload) // 4)
     packed = words.astype('>u4').view(np.uint8)
-    # What comes before the first one ends no number.
-    nibbles = np.zeros(_LONGEST + 2 * len(packed), np.uint8)
-    np.right_shift(packed, 4, out=nibbles[_LONGEST::2])
-    np.bitwise_and(packed, 15, out=nibbles[_LONGEST + 1::2])
-    if nibbles[-_LONGEST - 1:].min() >= 8:
+    # Padding before the first number.
+    nibbles = np.zeros(_MAX_DIGITS + 2 * len(packed), np.uint8)
+    np.right_shift(packed, 4, out=nibbles[_MAX_DIGITS::2])
+    np.bitwise_and(packed, 15, out=nibbles[_MAX_DIGITS + 1::2])
+    if nibbles[-_MAX_DIGITS - 1:].min() >= 8:
         raise _too_long()
     parts = [_read_part(nibbles, begin, min(begin + _PART, len(nibbles)))
-             for begin in range(_LONGEST, len(nibbles), _PART)]
+             for begin in range(_MAX_DIGITS, len(nibbles), _PART)]
     return np.concatenate(parts) if parts else np.empty(0, np.int32)
 
 
 def _too_long() -> FrameError:
-    return FrameError('rvl: corrupted, a number of more than {} digits'.format(_LONGEST))
+    return FrameError('rvl: corrupted, a number of more than {} digits'.format(_MAX_DIGITS))
 
 
 def _read_part(nibbles: np.ndarray, begin: int, end: int) -> np.ndarray:
@@ -89,12 +90,12 @@ def _read_part(nibbles: np.ndarray, begin: int, end: int) -> np.ndarray:
     last, before, earlier = (nibbles[begin - back:end - back] for back in range(3))
     ends = np.flatnonzero(last < 8)
     numbers = _PAIRS[((last << 4) | before)[ends]]
-    # Most have no more than two; ever fewer have one more.
+    # Most numbers have at most two nibbles; ever fewer have one more.
     which = np.flatnonzero(((before >= 8) & (earlier >= 8))[ends])
     places, digits = ends[which] + begin - 1, 2
     while len(which):
         digits += 1
-        if digits > _LONGEST:
+        if digits > _MAX_DIGITS:
             raise _too_long()
         places -= 1
         numbers[which] = (numbers[which] << 3) | (nibbles[places] & 7)
@@ -104,7 +105,7 @@ def _read_part(nibbles: np.ndarray, begin: int, end: int) -> np.ndarray:
 
 
 def _heads(numbers: memoryview, pixels: int) -> Tuple[np.ndarray, int]:
-    """Return where the heads of the runs are among the numbers, and where the last run ends."""
+    """Return the indices of the heads of the runs in the numbers, and the end of the last run."""
     heads = []
     place, left = 0, pixels
     try:
@@ -146,7 +147,7 @@ def encode_rvl(image: np.ndarray) -> bytes:
 def _write_numbers(numbers: np.ndarray) -> bytes:
     """Return the stream of int32 numbers >= 0."""
     lengths = np.ones(len(numbers), np.intp)
-    for digits in range(1, _LONGEST):
+    for digits in range(1, _MAX_DIGITS):
         longer = numbers >= 8 ** digits
         if not longer.any():
             break

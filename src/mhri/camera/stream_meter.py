@@ -5,11 +5,11 @@ from collections import deque
 from typing import Deque, Tuple
 
 WINDOW_S = 2.0
-_MOST = 2000
+_MAX_MESSAGES = 2000
 
 
 class StreamMeter:
-    """Counts what arrives; not thread-safe, times are passed in."""
+    """Counts received messages; not thread-safe, times are passed in."""
 
     def __init__(self, window_s: float = WINDOW_S) -> None:
         self._window_s = window_s
@@ -17,17 +17,18 @@ class StreamMeter:
         self._bytes = 0
 
     def add(self, now: float, size: int) -> None:
-        """Note a message of so many bytes."""
+        """Count a message of this size [bytes]."""
         self._came.append((now, size))
         self._bytes += size
         self._prune(now)
 
-    def look_back(self, window_s: float) -> None:
-        """Use a window of so many seconds from now on."""
+    def set_window(self, window_s: float) -> None:
+        """Set the length of the window [s]."""
         self._window_s = window_s
 
     def _prune(self, now: float) -> None:
-        while self._came and (self._came[0][0] < now - self._window_s or len(self._came) > _MOST):
+        while self._came and (self._came[0][0] < now - self._window_s
+                              or len(self._came) > _MAX_MESSAGES):
             self._bytes -= self._came.popleft()[1]
 
     def read(self, now: float) -> Tuple[float, float]:
@@ -36,7 +37,7 @@ class StreamMeter:
         if not self._came:
             return 0.0, 0.0
         first, last = self._came[0][0], self._came[-1][0]
-        # From the first to the last; but when the stream ends, the rate falls at once.
+        # From the first to the last message; when the stream ends, the rate falls at once.
         span = max(last - first, now - first - 2.0 * (last - first) / max(1, len(self._came) - 1))
         if len(self._came) < 2 or span <= 0.0:
             return 0.0, 8.0 * self._came[0][1] / self._window_s

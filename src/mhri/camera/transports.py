@@ -1,14 +1,16 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Which of a camera's topics to listen to: compressed first, raw if there is nothing else."""
+"""The choice among a camera's topics: compressed first, raw if there is nothing else."""
 from typing import Iterable, List, Mapping, NamedTuple, Optional
 
 from mhri.camera.image_message import COMPRESSED_TYPE, RAW_TYPE
 from mhri.camera.images import DEPTH, RGB
 
+#: topic on which a screen relays the pictures that it receives, as ``mhri/SeenPicture``
+PICTURES = '/panel/pictures'
 AUTO = 'auto'
 RAW = 'raw'
-# For each kind of picture: (name, what image_transport adds to the topic, type), best first.
+# For each kind of picture: (name, suffix of the topic by image_transport, type), best first.
 _TRANSPORTS = {
     RGB: (('compressed', '/compressed', COMPRESSED_TYPE), (RAW, '', RAW_TYPE)),
     DEPTH: (('compressedDepth', '/compressedDepth', COMPRESSED_TYPE), (RAW, '', RAW_TYPE)),
@@ -16,7 +18,7 @@ _TRANSPORTS = {
 
 
 class Offer(NamedTuple):
-    """One way to get a camera's picture: the transport's name and the full topic."""
+    """A transport of a camera's picture: its name and the full topic."""
 
     transport: str
     topic: str
@@ -25,11 +27,11 @@ class Offer(NamedTuple):
 def find_offers(kind: str, topics: Iterable[str], published: Mapping[str, str]) -> List[Offer]:
     """Return the :class:`Offer` list of a camera, best first.
 
-    A topic whose type is not the one its name promises is no offer.
+    A topic whose type does not match its name is left out.
 
     :param kind: 'rgb' or 'depth'
     :param topics: the camera's full topics in order of preference, without transport
-    :param published: {topic: type} of what is published now
+    :param published: {topic: type} of all published topics
     """
     return [Offer(transport, topic + ending) for topic in topics
             for transport, ending, message_type in _TRANSPORTS[kind]
@@ -42,7 +44,7 @@ def choose_offer(offers: Iterable[Offer], transport: str) -> Optional[Offer]:
 
 
 def may_carry(kind: str, transport: str, topic: str) -> bool:
-    """Tell whether a full topic belongs to a transport ('auto': to any)."""
+    """Return whether a full topic belongs to a transport ('auto': to any)."""
     if transport == AUTO:
         return True
     endings = {name: ending for name, ending, _ in _TRANSPORTS[kind]}

@@ -1,12 +1,14 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Loads libjpeg-turbo's own interface; without numpy, for who only asks whether it is there."""
+"""Loads libjpeg-turbo's own interface, without numpy, so that the doctor can check for it."""
 import ctypes
+from functools import lru_cache
 from typing import Optional
 
 _NAMES = ('libturbojpeg.so.0', 'libturbojpeg.so', 'libturbojpeg.dylib')
 
 
+@lru_cache(maxsize=1)
 def load() -> Optional[ctypes.CDLL]:
     """Return the library with its functions declared, None if it is not installed."""
     for name in _NAMES:

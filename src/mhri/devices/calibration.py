@@ -2,15 +2,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The dialogue that writes a profile for a pad, without terminal, device or clock.
 
-One step after the other::
+The steps are::
 
-    REST      everything let go: what each axis shows at rest    confirm() -> FORWARD
-    FORWARD   one stick or trigger pushed and let go             -> LEFT
-    LEFT      another axis pushed and let go                     -> the buttons
-    <action>  one button pressed and let go, or skip()           -> the next one, at last DONE
+    REST      everything released: record the axes at rest       confirm() -> FORWARD
+    FORWARD   one stick or trigger pushed and released           -> LEFT
+    LEFT      another axis pushed and released                   -> the buttons
+    <action>  one button pressed and released, or confirm()      -> the next one, finally DONE
 
-If something is unclear (two axes at once, a button already used), :attr:`Calibration.problem` says
-so, and the step starts again.
+If an input is ambiguous (two axes at once, a button already used), :attr:`Calibration.problem` is
+set, and the step is repeated.
 """
 import json
 import re
@@ -38,10 +38,10 @@ _PROMPTS = {
     DONE: 'Done.',
 }
 
-# Fractions of an axis' travel: beyond the first it was pushed on purpose, within the second let go.
+# Fractions of an axis' travel: beyond the first it is pushed, within the second released.
 _PUSHED = 0.5
 _RELEASED = 0.2
-# A second axis that went this far of the first one's way makes the push unclear.
+# A push is ambiguous if a second axis moved more than this share of the first one's travel.
 _ALIKE = 0.8
 _DEAD_ZONE = 0.08
 
@@ -49,7 +49,7 @@ _DEAD_ZONE = 0.08
 def profile_name(device: str, taken: Collection[str] = ()) -> str:
     """Return a profile name for a pad with this name: letters, digits and _.
 
-    :param taken: names that are not allowed
+    :param taken: names already in use
     """
     name = re.sub(r'[^a-z0-9]+', '_', device.lower()).strip('_')
     name = name if is_base_name(name) else 'pad_' + name if name else 'my_pad'
@@ -61,7 +61,7 @@ class Calibration:
 
     :param name: of the profile
     :param device: name of the pad
-    :param guid: of the pad, '' if it has none; then its name identifies it
+    :param guid: of the pad, or '': then its name identifies it
     """
 
     def __init__(self, name: str, device: str, guid: str = '') -> None:
@@ -77,34 +77,34 @@ class Calibration:
         self._pressed: Set[int] = set()
         self._down: FrozenSet[int] = frozenset()
         self._axes: Dict[str, int] = {}
-        # By their steps: what is said of an axis in the file, and the button of an action.
+        # By step: the entry of the axis in the file, and the button of the action.
         self._entries: Dict[str, Dict[str, float]] = {}
         self._buttons: Dict[str, int] = {}
 
     @property
     def prompt(self) -> str:
-        """What to ask the operator to do now."""
+        """The instruction of the present step for the operator."""
         return _PROMPTS[self.step]
 
     @property
     def axes(self) -> Dict[str, int]:
-        """The axes with a meaning so far: {step: index}."""
+        """The axes assigned so far: {step: index}."""
         return dict(self._axes)
 
     @property
     def buttons(self) -> Dict[str, int]:
-        """The buttons with a meaning so far: {step: index}."""
+        """The buttons assigned so far: {step: index}."""
         return dict(self._buttons)
 
     def confirm(self) -> None:
-        """Take in Enter: at rest everything is let go, at a button there is none."""
+        """Handle Enter: at REST everything is released; at a button the pad has none for it."""
         if self.step == REST:
             self._confirm_rest()
         elif self.step in _BUTTONS and not self._pressed:
             self._next()
 
     def _confirm_rest(self) -> None:
-        """Note the axes while nothing is touched."""
+        """Record the axes at rest."""
         rest = {index: value for index, value in enumerate(self._now) if value is not None}
         if len(rest) < 2:
             self.problem = 'Fewer than two axes have moved yet.'
@@ -114,7 +114,7 @@ class Calibration:
         self._next()
 
     def feed(self, axes: Sequence[Optional[float]], buttons: Sequence[int]) -> None:
-        """Take in a state of the pad: axes in [-1, 1] or None if unknown, buttons 0 or 1."""
+        """Handle a state of the pad: axes in [-1, 1] or None if unknown, buttons 0 or 1."""
         self._now = tuple(axes)
         self._down = frozenset(index for index, value in enumerate(buttons) if value)
         if self.step in (FORWARD, LEFT):
@@ -123,7 +123,7 @@ class Calibration:
             self._feed_buttons()
 
     def _feed_axes(self) -> None:
-        """Follow the axes until one has been pushed and all are let go."""
+        """Track the axes until one has been pushed and all are released."""
         moved = [(self._fraction(index, value), index) for index, value in enumerate(self._now)
                  if value is not None and index in self._rest]
         for fraction, index in moved:
@@ -143,15 +143,15 @@ class Calibration:
             self._accept_axis(order[0])
 
     def _fraction(self, index: int, value: float) -> float:
-        """Return how far an axis is from its rest, as a fraction of its travel."""
+        """Return the distance of an axis from its rest, as a fraction of its travel."""
         rest = self._rest[index]
         return (value - rest) / (1.0 + abs(rest))
 
     def _accept_axis(self, index: int) -> None:
         travel = self._travel[index]
         rest = self._rest[index]
-        # A stick's rest is the centre and what it is off belongs into the dead zone; a trigger's
-        # is the end.
+        # A stick rests at its centre, and the dead zone covers its offset; a trigger rests at its
+        # end.
         self._axes[self.step] = index
         entry: Dict[str, float] = {'axis': index}
         if abs(rest) > _PUSHED:
@@ -161,7 +161,7 @@ class Calibration:
         self._next()
 
     def _feed_buttons(self) -> None:
-        """Wait until one button has been pressed and let go."""
+        """Wait until one button has been pressed and released."""
         self._pressed |= self._down - self._stuck
         if not self._pressed or self._down - self._stuck:
             return
@@ -177,7 +177,7 @@ class Calibration:
             self._next()
 
     def _again(self, problem: str) -> None:
-        """Start the step again."""
+        """Repeat the step."""
         self.problem = problem
         self._travel = {}
         self._pressed = set()

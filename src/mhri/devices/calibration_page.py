@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The calibration of a pad on the screen: which step comes when, and what the page shows.
+"""The calibration of a pad on the screen: the order of its steps, and the page at each.
 
-Nothing drives meanwhile: it starts once STOP ALL is confirmed, and ends if that is released.
+No robot drives meanwhile: it starts once STOP ALL is confirmed, and ends if that is released.
 
 state     pad comes  pad goes  stop confirmed  stop given up  confirm()         again()
 ABSENT    READY      -         -               -              -                 -
@@ -13,7 +13,7 @@ DONE      -          -         -               -              SAVING            
 SAVING    -          -         -               -              -                 -
 SAVED     -          READY     -               -              -                 READY
 
-An event without an entry changes nothing. What is being saved comes back by
+An event without an entry changes nothing. The result of saving is reported by
 :meth:`CalibrationPage.saved` or :meth:`CalibrationPage.refused`.
 """
 from dataclasses import dataclass
@@ -34,14 +34,14 @@ _MEANINGS = {FORWARD: 'forward', LEFT: 'turn', 'dead_man': 'dead-man', 'turbo': 
 
 @dataclass(frozen=True)
 class CalibrationView:
-    """What the page shows.
+    """The content of the page.
 
-    ``pad`` is its name, '' if there is none. ``axes`` are in [-1, 1], None for an axis not
-    heard yet; ``buttons`` are 0 or 1. ``axis_words`` and ``button_words`` are (index,
-    meaning) for those that have one so far. ``prompt`` says what to do, ``problem`` what went wrong
-    ('': nothing). ``action`` is the text of the large button, '' if there is nothing to press;
-    ``step`` and ``steps`` count the questions, 0 before the first. ``can_restart`` tells whether
-    there is anything to start again.
+    ``pad`` is the name of the pad, '' without one. ``axes`` are in [-1, 1], None for an axis that
+    has not reported yet; ``buttons`` are 0 or 1. ``axis_words`` and ``button_words`` are (index,
+    meaning) of the axes and buttons assigned so far. ``prompt`` is the next step, ``problem`` the
+    last error or ''. ``action`` is the text of the large button, '' to disable it; ``step`` and
+    ``steps`` count the questions, 0 before the first. ``can_restart``: whether there is a
+    calibration to restart.
     """
 
     pad: str = ''
@@ -58,9 +58,9 @@ class CalibrationView:
 
 
 class CalibrationPage:
-    """One pad at a time; see the table above.
+    """The page of one pad at a time; see the table above.
 
-    :param taken: names a profile may not have: those of the shipped ones
+    :param taken: names not allowed for a profile, since shipped profiles have them
     """
 
     def __init__(self, taken: Collection[str] = ()) -> None:
@@ -73,11 +73,11 @@ class CalibrationPage:
         self._stopped = False
         self._problem = _LOOKING
         self._replace = False
-        self._said = ''
+        self._result = ''
 
     @property
     def name(self) -> str:
-        """The name the profile will have."""
+        """The name of the profile to be saved."""
         return profile_name(self._pad[0], self._taken)
 
     @property
@@ -87,7 +87,7 @@ class CalibrationPage:
 
     @property
     def replaces(self) -> bool:
-        """Whether the operator was asked to replace a file, and may have agreed."""
+        """Whether saving may replace a file: the operator has been asked."""
         return self._replace
 
     def text(self) -> str:
@@ -96,7 +96,7 @@ class CalibrationPage:
         return self._calibration.text()
 
     def on_line(self, line: Mapping[str, object]) -> None:
-        """Take in a line from the process of :mod:`mhri.devices.io.pad_stream`."""
+        """Handle a line from the process of :mod:`mhri.devices.io.pad_stream`."""
         if line.get('kind') == 'pad':
             self._appear(tidy_text(str(line.get('name', ''))), str(line.get('guid', '')))
         elif line.get('kind') == 'absent':
@@ -123,7 +123,7 @@ class CalibrationPage:
             self._settle()
 
     def on_stop(self, confirmed: bool) -> None:
-        """Take in whether everything is known to be stopped."""
+        """Handle whether STOP ALL is confirmed."""
         self._stopped = confirmed
         if confirmed and self.state == STOPPING:
             self._ask()
@@ -131,7 +131,7 @@ class CalibrationPage:
             self._begin(READY, 'The robots were released: nothing was saved.')
 
     def confirm(self) -> None:
-        """Take in a press of the large button, or Enter."""
+        """Handle a press of the large button, or Enter."""
         if self.state == READY:
             if self._stopped:
                 self._ask()
@@ -144,24 +144,24 @@ class CalibrationPage:
             self.state = SAVING
 
     def again(self) -> None:
-        """Start again."""
+        """Restart the calibration."""
         if self.state == ASKING:
             self._ask()
         elif self.state in (STOPPING, DONE, SAVED):
             self._begin(READY)
 
     def saved(self, sentence: str) -> None:
-        """Take note that the profile was written; the sentence says where."""
+        """Handle that the profile was written; the sentence has its path."""
         if self.state == SAVING:
-            self.state, self._said, self._problem = SAVED, sentence, ''
+            self.state, self._result, self._problem = SAVED, sentence, ''
 
     def refused(self, reason: str, exists: bool = False) -> None:
-        """Take note that it was not written; ``exists``: there is one with its name."""
+        """Handle that the profile was not written; ``exists``: its file exists already."""
         if self.state == SAVING:
             self.state, self._problem, self._replace = DONE, reason, exists
 
     def close(self) -> None:
-        """Forget the answers, except what is being saved."""
+        """Discard the answers, unless they are being saved."""
         if self.state != SAVING:
             self._begin(ABSENT, _LOOKING)
 
@@ -177,12 +177,12 @@ class CalibrationPage:
         self._calibration.feed(self._axes, self._buttons)
 
     def _settle(self) -> None:
-        """Go on once the last question has been answered."""
+        """Continue once the last question has been answered."""
         if self._calibration is not None and self._calibration.step == LAST_STEP:
             self.state = DONE
 
     def view(self) -> CalibrationView:
-        """Return what is on show now."""
+        """Return the present view."""
         calibration = self._calibration
         prompt, action = self._words()
         problem = self._problem or (calibration.problem if calibration else '')
@@ -195,7 +195,7 @@ class CalibrationPage:
             can_restart=self.state in (STOPPING, ASKING, DONE, SAVED))
 
     def _words(self) -> Tuple[str, str]:
-        """Return (what to do, what the large button says)."""
+        """Return (prompt, text of the large button)."""
         if self.state == ASKING and self._calibration is not None:
             step = self._calibration.step
             return self._calibration.prompt, \
@@ -209,7 +209,7 @@ class CalibrationPage:
             DONE: ('Keep this as the profile "{}"?'.format(self.name),
                    'Replace' if self._replace else 'Save'),
             SAVING: ('Saving ...', ''),
-            SAVED: (self._said, '')}[self.state]
+            SAVED: (self._result, '')}[self.state]
 
 
 def _meanings(indices: Mapping[str, int]) -> Tuple[Tuple[int, str], ...]:

@@ -1,25 +1,25 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Which of several pads to use, and which profile says what its axes mean."""
+"""The choice of a pad among several, and of its profile."""
 from collections import Counter
 from dataclasses import dataclass, replace
 from typing import Dict, Iterable, List, Optional, Sequence, Tuple
 
-from mhri.base.config import ConfigError
+from mhri.base.config import ConfigError, parse_all
 from mhri.devices.profile import parse_profile, Profile
 
 GENERIC = 'generic'
 _HEXADECIMAL = set('0123456789abcdef')
-# What kernel drivers show beside the pad itself, and devices for the feet.
+# Extra devices that kernel drivers create for a pad, and devices for the feet.
 _NO_PADS = ('motion sensors', 'touchpad', 'accelerometer', 'pedal', 'rudder', 'footswitch')
 
 
 @dataclass(frozen=True)
 class PadInfo:
-    """A connected pad: its place in SDL's list, its name, its GUID ('' if not known).
+    """A connected pad: its place in SDL's list, its name, its GUID ('' if unknown).
 
-    ``where`` tells it from others of its name, e.g. 'USB 1.2', '' if nothing is known. ``label`` is
-    what it is called on the screen, as :func:`tell_apart` says.
+    ``where`` distinguishes it from others with its name, e.g. 'USB 1.2', '' if unknown. ``label``
+    is its name on the screen, see :func:`with_labels`.
     """
 
     index: int
@@ -30,55 +30,51 @@ class PadInfo:
 
     @property
     def full_name(self) -> str:
-        """Its name and where it is."""
+        """Its name and its port."""
         return ', '.join(filter(None, (self.name, self.where)))
 
 
 def same_guid(guid: str) -> str:
-    """Return a GUID for comparison: lower case, without the check sum of the device's name.
+    """Return a GUID for comparison: in lower case, without the check sum of the device's name.
 
-    SDL 2.26 and later put that into the third and fourth byte; older ones have zeros there.
+    SDL 2.26 and later put that into the third and fourth byte; older versions have zeros there.
     """
     guid = guid.lower()
     return guid[:4] + '0000' + guid[8:]
 
 
 def is_guid(text: str) -> bool:
-    """Tell whether a text is a GUID of SDL: 32 hexadecimal digits."""
+    """Return whether a text is a GUID of SDL: 32 hexadecimal digits."""
     return len(text) == 32 and set(text.lower()) <= _HEXADECIMAL
 
 
 def load_profiles(
-        files: Iterable[Tuple[str, str, str]]) -> Tuple[List[Profile], List[ConfigError]]:
-    """Parse the profiles of all pads; a bad file does not hide the good ones.
+        files: Iterable[Tuple[str, str]]) -> Tuple[List[Profile], List[ConfigError]]:
+    """Parse many profiles, each with the name of its file; a bad file does not affect the others.
 
-    :param files: [(name, path, text)] in the order of preference; the name is the file's
-        without its ending, and the profile must say the same
-    :returns: ([Profile], [ConfigError])
+    :param files: pairs (path, text), in the order of preference
     """
-    profiles: List[Profile] = []
-    errors: List[ConfigError] = []
-    for name, path, text in files:
-        try:
-            profile = parse_profile(text, path)
-            if profile.name != name:
-                raise ConfigError(path, 'name', 'expected {!r} as the file is called, got '
-                                  '{!r}'.format(name, profile.name))
-        except ConfigError as error:
-            errors.append(error)
-        else:
-            profiles.append(profile)
-    return profiles, errors
+    return parse_all(files, _parse_named)
+
+
+def _parse_named(text: str, path: str) -> Profile:
+    """Parse a profile, and check that its name is that of its file."""
+    profile = parse_profile(text, path)
+    name = path.rpartition('/')[2].rpartition('.')[0]
+    if profile.name != name:
+        raise ConfigError(path, 'name', 'expected {!r} as the file is called, got {!r}'.format(
+            name, profile.name))
+    return profile
 
 
 def choose_profile(profiles: Sequence[Profile], name: str, guid: str = '') -> Tuple[Profile, str]:
-    """Return the profile for a pad, and what the operator should know about the choice ('').
+    """Return (profile for a pad, note for the operator, '' without one).
 
-    First the one that names its GUID; then the one that names the longest part of its name, since
-    'Wireless Controller' is many pads and 'Xbox Wireless Controller' is one; then ``generic``.
+    Profiles with its GUID come first; then the profile with the longest part of its name, since
+    'Wireless Controller' matches many pads and 'Xbox Wireless Controller' one; then ``generic``.
 
     :param profiles: in the order of preference
-    :raises LookupError: nothing fits, and there is no profile ``generic``
+    :raises LookupError: nothing matches, and there is no profile ``generic``
     """
     if guid:
         for profile in profiles:
@@ -100,7 +96,7 @@ def choose_profile(profiles: Sequence[Profile], name: str, guid: str = '') -> Tu
 
 
 def is_known(profiles: Sequence[Profile], pad: PadInfo) -> bool:
-    """Tell whether a profile names a pad by its GUID or its name."""
+    """Return whether a profile matches a pad by its GUID or its name."""
     try:
         return not choose_profile(profiles, pad.name, pad.guid)[1]
     except LookupError:
@@ -108,51 +104,52 @@ def is_known(profiles: Sequence[Profile], pad: PadInfo) -> bool:
 
 
 def only_pads(devices: Iterable[PadInfo]) -> List[PadInfo]:
-    """Return those that are no part of another pad, and nothing for the feet."""
+    """Return the devices without extra devices of a pad, and without pedals."""
     return [pad for pad in devices if not any(part in pad.name.lower() for part in _NO_PADS)]
 
 
-def tell_apart(pads: Iterable[PadInfo]) -> List[PadInfo]:
-    """Return the pads with labels that differ.
+def with_labels(pads: Iterable[PadInfo]) -> List[PadInfo]:
+    """Return the pads with unique labels.
 
-    That is its name; of several of one name also where it is, and a number where that does not
-    differ either.
+    A label is the name; if several pads have the same name, the port is added, and a number if that
+    is the same, too.
     """
     pads = list(pads)
     names = Counter(pad.name for pad in pads)
     seen: Dict[str, int] = {}
-    told = []
+    labelled = []
     for pad in pads:
         label = pad.full_name if names[pad.name] > 1 else pad.name
         seen[label] = seen.get(label, 0) + 1
-        told.append(replace(pad, label='{} ({})'.format(label, seen[label])
-                            if seen[label] > 1 else label))
-    return told
+        if seen[label] > 1:
+            label = '{} ({})'.format(label, seen[label])
+        labelled.append(replace(pad, label=label))
+    return labelled
 
 
 def choose_pad(wanted: object, pads: Iterable[PadInfo], profiles: Sequence[Profile]) -> PadInfo:
     """Return the :class:`PadInfo` to open.
 
-    :param wanted: '' (any: the first that a profile knows, else the first), a whole number (its
-        place in the list, from 0), a GUID, its label, or a part of its name in any case
-    :raises LookupError: there is none; the text says what was wanted and the remedy
+    :param wanted: '' (any: the first with a profile, else the first), a whole number (its place in
+        the list, from 0), a GUID, its label, or a part of its name in any case
+    :raises LookupError: no pad matches; the text has the request and the remedy
     """
     word = str(wanted).strip()
-    pads = tell_apart(only_pads(pads))
+    pads = with_labels(only_pads(pads))
     if not pads:
         raise LookupError('none is connected; plug one in, or press its PS button')
     if not word:
         return next((pad for pad in pads if is_known(profiles, pad)), pads[0])
-    # One name may be a part of another.
+    # A name may be a part of another: prefer exact matches.
     for pad in sorted(pads, key=lambda pad: word not in (pad.label, pad.full_name)):
-        if is_wanted(word, pad):
+        if is_chosen(word, pad):
             return pad
     raise LookupError('{!r} is not connected: plug it in, or choose another pad; connected: '
                       '{}'.format(word, describe(pads)))
 
 
-def is_wanted(wanted: object, pad: PadInfo) -> bool:
-    """Tell whether a pad is the wanted one; '' wants any."""
+def is_chosen(wanted: object, pad: PadInfo) -> bool:
+    """Return whether a pad matches a request; '' matches any."""
     word = str(wanted).strip()
     if word.isdigit() and len(word) < 4:
         return pad.index == int(word)

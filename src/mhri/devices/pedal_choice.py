@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Which connected device is the pedal, and which profile to read it with."""
+"""The choice of the pedal among the connected devices, and of its profile."""
 from dataclasses import dataclass
 import re
 from typing import Iterable, List, Mapping, Optional, Sequence, Tuple
@@ -9,20 +9,20 @@ from mhri.devices.pedals import AXES, KEYS, PedalProfile
 
 _USB_ID = re.compile(r'[0-9a-fA-F]{4}:[0-9a-fA-F]{4}$')
 
-# The profiles for a device that was named by the operator, but is known to no file.
+# The profiles for a device that the operator named, but no profile matches.
 GENERIC = {KEYS: 'three_keys', AXES: 'rudder_pedals'}
 
 
 class NoPedal(LookupError):
-    """No device, or more than one, could be the pedal; says which, why and the remedy."""
+    """No device, or more than one, matches; the text has the devices, the reason and the remedy."""
 
 
 @dataclass(frozen=True)
 class Candidate:
     """A connected device.
 
-    ``usb`` is ``vendor:product`` in lower case hexadecimal, '' if it has none; ``places`` are
-    paths or other names for it; ``kind`` is that of its profile.
+    ``usb`` is ``vendor:product`` in lower-case hexadecimal or ''; ``places`` are its paths or other
+    names; ``kind`` is the kind of its profile.
     """
 
     kind: str
@@ -36,8 +36,8 @@ class Candidate:
 
 
 @dataclass(frozen=True)
-class Wish:
-    """What the operator asked for: ``device`` and ``profile``, '' to leave it to the profiles.
+class PedalRequest:
+    """The operator's request: ``device`` and ``profile``, '' to choose by the profiles.
 
     ``device`` is ``vendor:product``, a place (a path or a GUID) or a part of a name in any case.
     """
@@ -46,7 +46,7 @@ class Wish:
     profile: str = ''
 
     def fits(self, candidate: Candidate) -> bool:
-        """Tell whether ``device`` asks for this device."""
+        """Return whether ``device`` matches a candidate."""
         if _USB_ID.match(self.device):
             return candidate.usb == self.device.lower()
         if self.device in candidate.places or self.device.startswith('/'):
@@ -55,9 +55,9 @@ class Wish:
 
 
 def usb_of_guid(guid: str) -> str:
-    """Return ``vendor:product`` of a GUID of SDL, '' if it holds none.
+    """Return ``vendor:product`` of a GUID of SDL, '' if it has none.
 
-    Its 16 bytes are bus, check sum, vendor, 0, product, 0, ...: two bytes each, the lower first.
+    Its 16 bytes are bus, check sum, vendor, 0, product, 0, ...: two bytes each, little-endian.
     """
     if len(guid) != 32 or guid[12:16] != '0000' or guid[20:24] != '0000':
         return ''
@@ -65,20 +65,20 @@ def usb_of_guid(guid: str) -> str:
     return '' if vendor == '0000' else '{}:{}'.format(vendor, product).lower()
 
 
-def choose(candidates: Iterable[Candidate], wish: Wish,
+def choose(candidates: Iterable[Candidate], request: PedalRequest,
            profiles: Mapping[str, PedalProfile]) -> Tuple[Candidate, PedalProfile]:
     """Return (candidate, profile).
 
-    If several devices fit, take none: a guess must never grab an operator's keyboard, and nobody
-    should press one pedal while the robots listen to another.
+    If several devices match, none is chosen: a guess must never grab an operator's keyboard, and a
+    pedal must not drive while the operator presses another one.
 
     :param profiles: {name: PedalProfile}
-    :raises NoPedal: nothing fits, or more than one, or the profile is not for such a device
+    :raises NoPedal: no or several devices match, or the profile is not for such a device
     """
-    profile = _wished_profile(wish, profiles)
-    if wish.device:
-        found = [item for item in candidates if wish.fits(item)]
-        wanted = '{!r}'.format(wish.device)
+    profile = _requested_profile(request, profiles)
+    if request.device:
+        found = [item for item in candidates if request.fits(item)]
+        wanted = '{!r}'.format(request.device)
     else:
         known = [profile] if profile else _automatic(profiles)
         found = [item for item in candidates if _known_to(item, known)]
@@ -95,15 +95,16 @@ def choose(candidates: Iterable[Candidate], wish: Wish,
     return found[0], profile or _profile_for(found[0], profiles)
 
 
-def _wished_profile(wish: Wish, profiles: Mapping[str, PedalProfile]) -> Optional[PedalProfile]:
-    """Return the profile asked for by name, None if none was."""
-    if not wish.profile:
+def _requested_profile(request: PedalRequest,
+                       profiles: Mapping[str, PedalProfile]) -> Optional[PedalProfile]:
+    """Return the profile requested by name, None without a request."""
+    if not request.profile:
         return None
-    if wish.profile not in profiles:
+    if request.profile not in profiles:
         raise NoPedal('no pedal profile {!r}; there are {}'.format(
-            wish.profile, ', '.join(sorted(profiles)) or 'none'))
-    profile = profiles[wish.profile]
-    if not wish.device and not profile.usb and not profile.names:
+            request.profile, ', '.join(sorted(profiles)) or 'none'))
+    profile = profiles[request.profile]
+    if not request.device and not profile.usb and not profile.names:
         raise NoPedal('profile {!r} is for no device in particular: set ~device to the '
                       'vendor:product (lsusb shows it), path or name of yours'.format(profile.name))
     return profile
@@ -115,13 +116,13 @@ def _automatic(profiles: Mapping[str, PedalProfile]) -> List[PedalProfile]:
 
 
 def _known_to(candidate: Candidate, profiles: Sequence[PedalProfile]) -> bool:
-    """Tell whether one of some profiles is for a device."""
+    """Return whether any of the profiles is for a device."""
     return any(profile.kind == candidate.kind and profile.fits(candidate.usb, candidate.name)
                for profile in profiles)
 
 
 def _profile_for(candidate: Candidate, profiles: Mapping[str, PedalProfile]) -> PedalProfile:
-    """Return the profile of a device, the generic one if no file knows it."""
+    """Return the profile of a device, by default the generic one."""
     for profile in _automatic(profiles):
         if _known_to(candidate, [profile]):
             return profile

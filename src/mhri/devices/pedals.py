@@ -1,24 +1,28 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Foot pedals: what each does, read from a file, and what their values ask for.
+"""Foot pedals: their profiles, and the Joy message from their values.
 
 A pedal has a value: 0 or 1 for a switch, the fraction of its travel for an axis. All pedals of a
-device together give the axes and buttons of a ``sensor_msgs/Joy`` as the mux reads them:
+device together make the axes and buttons of a ``sensor_msgs/Joy`` as the mux reads them:
 ``axes[0]`` left +1 .. right -1, ``axes[1]`` forward +1 .. back -1; ``buttons[0]`` is an enabling
-pedal, then comes one button for each pedal in the order of the file.
+pedal, followed by a button for each pedal in the order of the file.
 """
 from dataclasses import dataclass
 import math
 import re
 from typing import AbstractSet, Any, Dict, Iterable, List, Optional, Sequence, Set, Tuple
 
-from mhri.base.config import ConfigError, parse_yaml, Section
+from mhri.base.config import ConfigError, parse_all, parse_yaml, Section
+from mhri.devices.bindings import Binding, Layout, read_bindings
+from mhri.devices.profile import Axis, Profile
 
 DRIVE = 'drive'
 ENABLE = 'enable'
 ROLES = (DRIVE, ENABLE)
 KEYS = 'keys'
 AXES = 'axes'
+# A Joy names the profile of its pedals with this, where they act on accessories.
+NAMED = 'pedal:'
 
 _KEY_NAME = re.compile(r'(KEY|BTN)_[A-Z0-9_]+$')
 _USB_ID = re.compile(r'[0-9a-f]{4}:[0-9a-f]{4}$')
@@ -26,11 +30,11 @@ _USB_ID = re.compile(r'[0-9a-f]{4}:[0-9a-f]{4}$')
 
 @dataclass(frozen=True)
 class Pedal:
-    """One pedal: where its value comes from, and what a value of 1 does.
+    """One pedal: the source of its value, and the effect of a value of 1.
 
     ``keys`` are names as in linux/input-event-codes.h, any of which presses it; or ``axis`` is the
-    index of an axis that shows ``rest`` while nobody touches it and ``full`` at full travel. One
-    that goes ``both_ways`` from its rest has values in [-1, 1], any other in [0, 1].
+    index of an axis with the value ``rest`` while released and ``full`` at full travel. A pedal
+    that moves ``both_ways`` from its rest has values in [-1, 1], any other in [0, 1].
     ``forward`` and ``turn`` (left +) are fractions of the operator's limits, in [-1, 1].
     A ``direction`` pedal makes the others drive backward; an ``enabling`` one is the dead-man.
     """
@@ -47,9 +51,9 @@ class Pedal:
     enabling: bool = False
 
     def travel(self, raw: Optional[float]) -> Optional[float]:
-        """Return the fraction of its travel that an axis shows; overshoot is clipped.
+        """Return the value of the axis as a fraction of its travel; overshoot is clipped.
 
-        :returns: None if the axis has shown nothing yet, or nothing that is a number
+        :returns: None if the axis has not reported yet, or its value is not a number
         """
         if raw is None or not math.isfinite(raw):
             return None
@@ -61,11 +65,11 @@ class Pedal:
 class PedalProfile:
     """The pedals of one kind of device, read from ``resource/pedals/<name>.yaml``.
 
-    ``kind`` is KEYS (a foot switch that types) or AXES (rudder pedals, a joystick). ``usb`` holds
-    the ``vendor:product`` (hexadecimal) and ``names`` the parts of names, whatever their case, of
-    the devices it is for. ``dead_zone`` is the fraction of an axis' travel that counts as rest
-    (the remainder is stretched); from ``pressed_at`` on it counts as pressed. A profile that is not
-    ``automatic`` is used only on request, by its name.
+    ``kind`` is KEYS (a foot switch that types) or AXES (rudder pedals, a joystick). ``usb`` has the
+    ``vendor:product`` (hexadecimal) and ``names`` the parts of names, in any case, of its devices.
+    ``dead_zone`` is the fraction of an axis' travel that counts as rest (the remainder is
+    stretched); from ``pressed_at`` on it counts as pressed. A profile that is not ``automatic`` is
+    used only if requested by name. ``bindings`` are pedals that act on accessories instead.
     """
 
     name: str
@@ -77,9 +81,14 @@ class PedalProfile:
     dead_zone: float = 0.0
     pressed_at: float = 0.5
     automatic: bool = True
+    bindings: Tuple[Binding, ...] = ()
+
+    def as_profile(self) -> Profile:
+        """Return the meanings of the axes and buttons that its pedals make."""
+        return Profile(self.name, Axis(1, 1.0), Axis(0, 1.0), bindings=self.bindings)
 
     def fits(self, usb: str, name: str) -> bool:
-        """Tell whether this profile is for a device (``vendor:product``, name)."""
+        """Return whether this profile is for a device (``vendor:product``, name)."""
         lower = name.lower()
         return usb in self.usb or any(part.lower() in lower for part in self.names)
 
@@ -91,16 +100,16 @@ class PedalProfile:
         return tuple(0.0 if held.isdisjoint(pedal.keys) else 1.0 for pedal in self.pedals)
 
     def from_axes(self, raw: Sequence[Optional[float]]) -> Tuple[Optional[float], ...]:
-        """Return the value of each pedal; None for one whose axis has shown nothing yet.
+        """Return the value of each pedal, None until its axis has reported.
 
-        :param raw: the axes of the device as a list; None for those that are not known yet
+        :param raw: the axes of the device, None if not known yet
         """
         values = (pedal.travel(raw[pedal.axis] if pedal.axis is not None and pedal.axis < len(raw)
                                else None) for pedal in self.pedals)
         return tuple(None if value is None else self._stretch(value) for value in values)
 
     def _stretch(self, value: float) -> float:
-        """Take the dead zone out of a value."""
+        """Remove the dead zone from a value."""
         size = abs(value)
         if size <= self.dead_zone:
             return 0.0
@@ -108,7 +117,7 @@ class PedalProfile:
 
 
 class _Direction:
-    """Which way the driving pedals go; decided as they are pressed, until they are released.
+    """The direction of the driving pedals, fixed from their press to their release.
 
     A robot must not reverse at full speed because a foot slipped: if the direction pedal changes
     while a driving pedal is pressed, nothing moves until the latter has been released.
@@ -121,7 +130,7 @@ class _Direction:
         self.state = self.REST
 
     def take(self, driving: bool, reverse: bool) -> float:
-        """Follow the pedals; return the factor of forward: 1, -1, or 0 for a hold."""
+        """Update the direction; return the factor of forward: 1, -1, or 0 for a hold."""
         wanted = self.BACK if reverse else self.AHEAD
         if not driving:
             self.state = self.REST
@@ -133,12 +142,12 @@ class _Direction:
 
 
 class PedalState:
-    """What the feet ask for; make a new one each time a device is opened.
+    """The commands of the feet; make a new one each time a device is opened.
 
-    A pedal counts once it has been seen released: one held down (by a foot or a fallen book) while
-    the device is opened does nothing until it has been let go.
+    A pedal counts once it has been released: one that is held down (by a foot or a fallen book)
+    while the device is opened has no effect before.
 
-    :param role: DRIVE, or ENABLE: the axes stay at zero, ``buttons[0]`` is what matters
+    :param role: DRIVE, or ENABLE: the axes stay at zero, and only ``buttons[0]`` counts
     """
 
     def __init__(self, profile: PedalProfile, role: str = DRIVE) -> None:
@@ -149,28 +158,32 @@ class PedalState:
         self._known = False
         self._unknown = [True] * len(profile.pedals)
         marked = tuple(pedal.enabling for pedal in profile.pedals)
-        # If the file marks none, any pedal except one that only sets the direction.
+        bound = {binding.source.button for binding in profile.bindings}
+        # By default every pedal is enabling that drives, or could.
         self._enabling = marked if any(marked) else tuple(
-            not pedal.direction for pedal in profile.pedals)
+            not pedal.direction and number not in bound
+            for number, pedal in enumerate(profile.pedals, 1))
+        #: what the Joy has to name as its profile, '' for nothing
+        self.named = NAMED + profile.name if profile.bindings and role == DRIVE else ''
 
     def note(self) -> str:
-        """Return what the operator must do before every pedal counts, '' if nothing."""
+        """Return the operator's action needed before every pedal counts, or ''."""
         if any(self._unknown):
             return 'move once: {} (nothing is known yet of it)'.format(self._names(self._unknown))
         held = [not armed for armed in self._armed]
         return 'release once: {}'.format(self._names(held)) if any(held) else ''
 
     def _names(self, marks: Iterable[bool]) -> str:
-        """Return the names of the pedals that are marked."""
+        """Return the names of the marked pedals."""
         return ', '.join(pedal.name for pedal, mark in zip(self._profile.pedals, marks) if mark)
 
     def read(self, values: Sequence[Optional[float]]
              ) -> Optional[Tuple[Tuple[float, float], Tuple[int, ...]]]:
         """Return (axes, buttons) for the values of all pedals, in the order of the profile.
 
-        :param values: in [-1, 1]; None if a pedal's value is not known
-        :returns: None until every value has been known once; if a value becomes unknown
-            later, everything is zero and must be seen released again
+        :param values: in [-1, 1], None if unknown
+        :returns: None until every value has been known once; if a value becomes unknown later,
+            everything is zero, and every pedal must be released again
         """
         self._unknown = [value is None for value in values]
         counted = [value for value in values if value is not None]
@@ -189,7 +202,7 @@ class PedalState:
         return self._axes(counted, pressed), buttons
 
     def _axes(self, values: Sequence[float], pressed: Sequence[bool]) -> Tuple[float, float]:
-        """Return (left, forward) of the values."""
+        """Return (left, forward) for the values."""
         pedals = self._profile.pedals
         forward = sum(value * pedal.forward for value, pedal in zip(values, pedals))
         turn = sum(value * pedal.turn for value, pedal in zip(values, pedals))
@@ -199,12 +212,12 @@ class PedalState:
         sign = self._direction.take(driving, reverse)
         if self._role == ENABLE or sign == 0.0:
             return 0.0, 0.0
-        # + 0.0 makes a zero of minus zero, which reads badly in every echo.
+        # + 0.0 turns minus zero into zero, which is easier to read in an echo.
         return _within_one(turn) + 0.0, _within_one(forward) * sign + 0.0
 
 
 def _within_one(value: float) -> float:
-    """Return the value cut to [-1, 1]."""
+    """Return the value clipped to [-1, 1]."""
     return max(-1.0, min(1.0, value))
 
 
@@ -221,10 +234,11 @@ def parse_pedal_profile(text: str, origin: str) -> PedalProfile:
     rows = section.sections('pedals')
     if not rows:
         raise section.error('pedals', 'name at least one pedal')
+    pedals = tuple(_pedal(row, kind) for row in rows)
     usb, names = _match(section)
     profile = PedalProfile(
         name=name, label=section.text('label', name), kind=kind,
-        pedals=tuple(_pedal(row, kind) for row in rows), usb=usb, names=names,
+        pedals=pedals, usb=usb, names=names, bindings=_bindings(section, pedals),
         dead_zone=section.number('dead_zone', 0.0, 0.9, 0.0),
         pressed_at=section.number('pressed_at', 0.01, 1.0, 0.5),
         automatic=section.flag('automatic', True))
@@ -233,8 +247,20 @@ def parse_pedal_profile(text: str, origin: str) -> PedalProfile:
     return profile
 
 
+def _bindings(section: Section, pedals: Sequence[Pedal]) -> Tuple[Binding, ...]:
+    """Read which pedals act on accessories: as buttons, by their numbers, the first is 1."""
+    taken = {number: 'a pedal that drives, enables or sets the direction'
+             for number, pedal in enumerate(pedals, 1)
+             if pedal.forward or pedal.turn or pedal.direction or pedal.enabling}
+    found = read_bindings(section, Layout(None, {0: 'the enabling pedal', **taken}, {}, ()))
+    if not all(binding.source.button in range(1, len(pedals) + 1) for binding in found):
+        raise section.error('accessories', 'expected button: the number of a pedal, 1 to {}'.format(
+            len(pedals)))
+    return found
+
+
 def _match(section: Section) -> Tuple[Tuple[str, ...], Tuple[str, ...]]:
-    """Read for which devices a profile is."""
+    """Read the devices of a profile."""
     match = section.section('match', None)
     if match is None:
         return (), ()
@@ -265,7 +291,7 @@ def _pedal(row: Section, kind: str) -> Pedal:
 
 
 def _keys(row: Section) -> Dict[str, Any]:
-    """Read the keys of a switch, as what a :class:`Pedal` is made of."""
+    """Read the keys of a switch, as arguments of :class:`Pedal`."""
     keys = row.texts('keys')
     wrong = [key for key in keys if not _KEY_NAME.match(key)]
     if wrong or not keys:
@@ -275,7 +301,7 @@ def _keys(row: Section) -> Dict[str, Any]:
 
 
 def _axis(row: Section) -> Dict[str, Any]:
-    """Read the axis of a pedal, as what a :class:`Pedal` is made of."""
+    """Read the axis of a pedal, as arguments of :class:`Pedal`."""
     axis = {'axis': row.index('axis'), 'rest': row.number('rest', -1.0, 1.0, 0.0),
             'full': row.number('full', -1.0, 1.0, 1.0), 'both_ways': row.flag('both_ways', False)}
     if abs(axis['full'] - axis['rest']) < 0.1:
@@ -284,9 +310,9 @@ def _axis(row: Section) -> Dict[str, Any]:
 
 
 def _check_together(section: Section, profile: PedalProfile) -> None:
-    """Refuse what each pedal may have, but not all of them together.
+    """Check the pedals of a profile against each other.
 
-    :raises ConfigError: two pedals of one name or key, or nothing that drives
+    :raises ConfigError: two pedals have the same name or key, or none drives
     """
     seen: Set[str] = set()
     for number, pedal in enumerate(profile.pedals):
@@ -300,19 +326,14 @@ def _check_together(section: Section, profile: PedalProfile) -> None:
 
 def load_pedal_profiles(
         files: Iterable[Tuple[str, str]]) -> Tuple[Dict[str, PedalProfile], List[ConfigError]]:
-    """Parse many profiles; one bad file never hides the good ones.
+    """Parse many profiles; a bad file does not affect the others.
 
-    :param files: pairs (origin, text), the more important first
+    :param files: pairs (origin, text), in the order of precedence
     :returns: ({name: PedalProfile}, [ConfigError]); of two files with the same name the first
-        counts, so that an operator's own file replaces a shipped one
+        is used, so that an operator's own file replaces a shipped one
     """
+    found, errors = parse_all(files, parse_pedal_profile)
     profiles: Dict[str, PedalProfile] = {}
-    errors: List[ConfigError] = []
-    for origin, text in files:
-        try:
-            profile = parse_pedal_profile(text, origin)
-        except ConfigError as error:
-            errors.append(error)
-            continue
+    for profile in found:
         profiles.setdefault(profile.name, profile)
     return profiles, errors

@@ -1,28 +1,29 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Profiles: which axis and button of a device means what."""
+"""Profiles: the meanings of the axes and buttons of a device."""
 import math
 from dataclasses import dataclass, replace
-from typing import FrozenSet, NamedTuple, Optional, Sequence, Tuple, Union
+from typing import Dict, FrozenSet, List, NamedTuple, Optional, Sequence, Tuple, Union
 
 from mhri.base.config import parse_yaml, Section
 from mhri.base.limits import Velocity, within_limits
+from mhri.devices.bindings import Binding, Layout, read_bindings
 
-# As a dead-man button: any button, for a pad whose buttons nobody knows.
+# Any button is the dead-man button, for a pad with unknown buttons.
 ANY = 'any'
-# Slower than this [m/s, rad/s], a Twist asks for standstill.
+# A Twist below this counts as standstill [m/s, rad/s].
 _CREEP = 1e-3
 
-# What a button can do besides driving; the keys of a profile are these plus ``_button``.
+# Actions of a button besides driving; the keys of a profile are these plus ``_button``.
 STOP_ALL = 'stop_all'
 NEXT_ROBOT, PREVIOUS_ROBOT, SELECT_ALL = 'next_robot', 'previous_robot', 'select_all'
 ACTIONS = (STOP_ALL, NEXT_ROBOT, PREVIOUS_ROBOT, SELECT_ALL)
-# What no calibration asks for: a line in the profile's file gives it a button.
+# Not part of a calibration: only the profile's file can give it a button.
 MARK = 'mark'
 
 
 class JoyRefused(ValueError):
-    """A Joy message that cannot be used; ``kind`` is the word under which it is counted."""
+    """A Joy message cannot be used; ``kind`` is the word under which it is counted."""
 
     def __init__(self, kind: str, problem: str) -> None:
         self.kind = kind
@@ -33,7 +34,7 @@ class JoyRefused(ValueError):
 class Axis:
     """One axis of a device: its index and the sign that makes forward and left positive.
 
-    ``rest`` is what the driver reports while nobody touches the axis: 0 for a stick, -1 for the
+    ``rest`` is the value while the axis is released: 0 for a stick, -1 for the
     triggers of most pads.
     """
 
@@ -48,11 +49,11 @@ class Axis:
 
 
 class Stick(NamedTuple):
-    """What the operator asks for, as fractions of the speed limits.
+    """The operator's command, as fractions of the speed limits.
 
-    ``forward`` and ``turn`` (left +) are in [-1, 1] and already zero while the dead-man button is
-    released; ``neutral`` tells whether the stick itself is at rest; ``held`` whether the dead-man
-    button (if the profile names one, as ``has_dead_man`` tells) is pressed.
+    ``forward``, ``turn`` and ``sideways`` (left +) are in [-1, 1] and already zero while the
+    dead-man button is released; ``neutral``: whether the stick itself is at rest; ``held``: whether
+    the dead-man button is pressed; ``has_dead_man``: whether the profile has such a button.
     """
 
     forward: float
@@ -60,59 +61,64 @@ class Stick(NamedTuple):
     neutral: bool
     held: bool = True
     has_dead_man: bool = False
+    sideways: float = 0.0
 
     def is_zero(self) -> bool:
-        """Tell whether nothing is asked for."""
-        return self.forward == 0.0 and self.turn == 0.0
+        """Return whether the command is standstill."""
+        return not (self.forward or self.turn or self.sideways)
 
     def velocity(self, limits: Tuple[float, float]) -> Velocity:
-        """Return the :class:`Velocity` asked for, given the limits [m/s, rad/s]."""
-        return Velocity(self.forward * limits[0], self.turn * limits[1])
+        """Return the commanded :class:`Velocity` for the limits [m/s, rad/s]."""
+        velocity = Velocity(self.forward * limits[0], self.turn * limits[1],
+                            self.sideways * limits[0])
+        return within_limits(velocity, *limits) if self.sideways else velocity
 
 
 @dataclass(frozen=True)
 class Asked:
-    """What a source of velocities asks for; the arbiter treats it like a :class:`Stick`."""
+    """The command of a source of velocities; the arbiter treats it like a :class:`Stick`."""
 
     wanted: Velocity
     held, has_dead_man = True, False
 
     @property
     def neutral(self) -> bool:
-        """Whether it asks for standstill."""
+        """Whether it commands standstill."""
         return self.is_zero()
 
     def is_zero(self) -> bool:
-        """Tell whether nothing is asked for."""
-        return max(abs(self.wanted.linear_mps), abs(self.wanted.angular_rad_s)) < _CREEP
+        """Return whether the command is standstill."""
+        return max(map(abs, self.wanted)) < _CREEP
 
     def velocity(self, limits: Tuple[float, float]) -> Velocity:
-        """Return the :class:`Velocity` within the limits [m/s, rad/s], with the same curvature."""
+        """Return the :class:`Velocity` within the limits [m/s, rad/s], on the same path."""
         return within_limits(self.wanted, *limits)
 
 
-#: What a source asks for, of either kind.
+#: The command of a source, of either kind.
 Wanted = Union[Stick, Asked]
 
 
-def read_twist(linear: Sequence[float], angular: Sequence[float]) -> Asked:
-    """Turn the two vectors of a ``geometry_msgs/Twist`` into an :class:`Asked`.
+def read_twist(linear: Sequence[float], angular: Sequence[float],
+               sideways: bool = False) -> Asked:
+    """Convert the two vectors of a ``geometry_msgs/Twist`` to an :class:`Asked`.
 
     Robots drive in the plane: only x of the first and z of the second count [m/s, rad/s].
 
+    :param sideways: y of the first counts, too
     :raises JoyRefused: NaN or infinity anywhere
     """
     if not all(math.isfinite(value) for value in (*linear, *angular)):
         raise JoyRefused('not_finite', 'a Twist with NaN or infinity')
-    return Asked(Velocity(linear[0], angular[2]))
+    return Asked(Velocity(linear[0], angular[2], linear[1] if sideways else 0.0))
 
 
 @dataclass(frozen=True)
 class Match:
-    """Which devices a profile is for.
+    """The devices of a profile.
 
-    ``guids`` are SDL's (32 hexadecimal digits), ``names`` are parts of a device's name, in upper
-    or lower case.
+    ``guids`` are SDL's (32 hexadecimal digits), ``names`` are parts of a device's name, in any
+    case.
     """
 
     guids: Tuple[str, ...] = ()
@@ -124,13 +130,15 @@ class Profile:
     """The mapping of one device, read from ``resource/pads/<name>.yaml``.
 
     ``dead_zone`` is the fraction of travel around the centre that counts as zero (the rest is
-    stretched, so that full travel stays full speed); ``neutral`` the fraction inside which the
-    stick counts as released for the interlock, and then asks for nothing: at most the dead zone,
-    where there is one; ``curve`` bends the response, 0 straight to 1
-    cubic, for fine control near the centre. ``dead_man`` is the button that must be held for
-    anything to move, ``ANY`` for any button, None for none. ``turbo`` is a button; while it is
-    not held, everything is multiplied by ``without_turbo``. ``actions`` are
-    (button, one of ``ACTIONS`` or ``MARK``).
+    stretched, so that full travel stays full speed). ``neutral`` is the fraction within which the
+    stick counts as released for the interlock, and commands nothing; it is limited to the dead
+    zone, if any. ``curve`` bends the response, from 0, linear, to 1, cubic, for fine control near
+    the centre. ``dead_man`` is the button that must be held for anything to move, ``ANY`` for any
+    button, None for none. ``turbo`` is a button; while it is not held, everything is multiplied by
+    ``without_turbo``. ``actions`` are (button, one of ``ACTIONS`` or ``MARK``). A holonomic robot
+    moves sideways by the axis ``sideways``, which a device may lack, or by ``turn`` while
+    ``sideways_button`` is held. ``bindings`` act on accessories, some of them only while the button
+    ``shift`` is held.
     """
 
     name: str
@@ -144,10 +152,15 @@ class Profile:
     without_turbo: float = 0.5
     actions: Tuple[Tuple[int, str], ...] = ()
     match: Match = Match()
+    sideways: Optional[Axis] = None
+    sideways_button: Optional[int] = None
+    bindings: Tuple[Binding, ...] = ()
+    shift: Optional[int] = None
 
-    def read(self, axes: Sequence[float], buttons: Sequence[int]) -> Stick:
-        """Turn the axes and buttons of a ``sensor_msgs/Joy`` into a :class:`Stick`.
+    def read(self, axes: Sequence[float], buttons: Sequence[int], sideways: bool = False) -> Stick:
+        """Convert the axes and buttons of a ``sensor_msgs/Joy`` to a :class:`Stick`.
 
+        :param sideways: whether the sideways axis counts, also for neutral
         :raises JoyRefused: no axes, too few axes or buttons, NaN or infinity anywhere
         """
         if not axes:
@@ -160,20 +173,35 @@ class Profile:
                              '{}'.format(len(axes), self.name, needed))
         held = self._held(buttons)
         forward, turn = self.forward.read(axes), self.turn.read(axes)
-        # A stick that counts as let go moves nothing.
-        rests = min(self.neutral, self.dead_zone) if self.dead_zone else self.neutral
-        neutral = max(abs(forward), abs(turn)) <= rests
+        aside = 0.0
+        if sideways:
+            turn, aside = self._aside(axes, buttons, turn)
+        # A stick that counts as released moves nothing.
+        neutral = max(abs(forward), abs(turn), abs(aside)) <= self.rests
         guarded = self.dead_man is not None
         if neutral or not held:
             return Stick(0.0, 0.0, neutral, held, guarded)
         # A pad without that button is slow, never fast.
         slow = self.turbo is not None and not is_pressed(buttons, self.turbo)
         factor = self.without_turbo if slow else 1.0
-        return Stick(factor * self._respond(forward), factor * self._respond(turn), neutral,
-                     has_dead_man=guarded)
+        return Stick(factor * self.respond(forward), factor * self.respond(turn), neutral,
+                     has_dead_man=guarded, sideways=factor * self.respond(aside))
+
+    @property
+    def rests(self) -> float:
+        """The fraction of the travel within which a stick counts as released."""
+        return min(self.neutral, self.dead_zone) if self.dead_zone else self.neutral
+
+    def _aside(self, axes: Sequence[float], buttons: Sequence[int],
+               turn: float) -> Tuple[float, float]:
+        """Return (turn, sideways), in [-1, 1]."""
+        if self.sideways_button is not None and is_pressed(buttons, self.sideways_button):
+            return 0.0, turn
+        there = self.sideways is not None and self.sideways.index < len(axes)
+        return turn, self.sideways.read(axes) if self.sideways and there else 0.0
 
     def _held(self, buttons: Sequence[int]) -> bool:
-        """Tell whether the dead-man button is held; always true if there is none.
+        """Return whether the dead-man button is held; always true without such a button.
 
         :raises JoyRefused: the device does not have that button
         """
@@ -198,8 +226,8 @@ class Profile:
             return frozenset()
         return frozenset(action for button, action in self.actions if is_pressed(buttons, button))
 
-    def _respond(self, value: float) -> float:
-        """Take the dead zone out of one axis and bend the rest."""
+    def respond(self, value: float) -> float:
+        """Remove the dead zone from the value of an axis, and apply the curve to the rest."""
         size = abs(value)
         if size <= self.dead_zone:
             return 0.0
@@ -208,7 +236,7 @@ class Profile:
 
 
 def is_pressed(buttons: Sequence[int], index: int) -> bool:
-    """Tell whether a button is down; one that the device does not have counts as up."""
+    """Return whether a button is down; a missing button counts as up."""
     return index < len(buttons) and bool(buttons[index])
 
 
@@ -234,20 +262,42 @@ def parse_profile(text: str, origin: str) -> Profile:
         name=section.text('name'),
         forward=_axis(section.section('forward')),
         turn=_axis(section.section('turn')),
+        sideways=_axis(section.section('sideways')) if 'sideways' in section else None,
+        sideways_button=section.index('sideways_button', None),
         dead_zone=dead_zone,
         neutral=section.number('neutral', 0.0, 0.9, max(0.02, dead_zone)),
         dead_man=_dead_man(section),
         curve=section.number('curve', 0.0, 1.0, 0.0),
-        turbo=section.index('turbo_button', None),
+        turbo=section.index('turbo_button', None), shift=section.index('shift_button', None),
         without_turbo=section.number('without_turbo', 0.05, 1.0, 0.5),
         actions=tuple((button, action) for button, action in buttons if button is not None),
         match=_match(section.section('match', None)))
-    taken = [button for button, _ in profile.actions] + [profile.turbo]
-    if profile.dead_man is not None and profile.dead_man in taken:
-        raise section.error('dead_man_button', 'button {} has another meaning already; a dead-man '
-                            'button can have no other'.format(profile.dead_man))
+    taken: List[object] = [button for button, _ in profile.actions]
+    taken += [profile.turbo, profile.sideways_button]
+    for name, button in (('dead_man_button', profile.dead_man), ('shift_button', profile.shift)):
+        if button is not None and button in taken:
+            raise section.error(name, 'button {} has another meaning already; {} can have no '
+                                'other'.format(button, 'a dead-man button'
+                                               if name.startswith('dead') else 'it'))
+        taken.append(button)
+    profile = replace(profile, bindings=read_bindings(section, _layout(profile)))
+    if profile.dead_man == ANY and (profile.shift is not None or profile.bindings):
+        raise section.error('dead_man_button', 'with any, no button is left for accessories: name '
+                            'one')
     section.close()
     return profile
+
+
+def _layout(profile: Profile) -> Layout:
+    """Return what a profile uses for anything but accessories."""
+    always: Dict[object, str] = {
+        profile.dead_man: 'the dead-man button', profile.shift: 'the shift button',
+        profile.turbo: 'turbo', profile.sideways_button: 'sideways',
+        **{button: action for button, action in profile.actions if action == STOP_ALL}}
+    return Layout(
+        profile.shift, {button: meaning for button, meaning in always.items()
+                        if isinstance(button, int)}, dict(profile.actions),
+        [axis.index for axis in (profile.forward, profile.turn, profile.sideways) if axis])
 
 
 def _dead_man(section: Section) -> Union[int, str, None]:

@@ -1,21 +1,22 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""When an input device's state is published: on change, but not too often, and again while held."""
+"""The times of publishing an input device's state: on change, rate-limited, and periodically."""
 from typing import Generic, Optional, TypeVar
 
 State = TypeVar('State')
 
-# Shortest time between two messages [s]; of changes in between only the newest state is sent.
+# Minimum time between two messages [s]; of changes in between only the newest state is sent.
 MIN_PERIOD_S = 0.01
-# A stick held still sends nothing by itself, and the mux takes silence for a loss.
+# Period of repetitions [s]: a stick that is held still reports nothing, and the mux treats silence
+# as a loss.
 REPEAT_S = 0.05
 
 
 class Pacer(Generic[State]):
-    """Holds the newest state of a device and says when to publish it.
+    """Stores the newest state of a device and determines when to publish it.
 
-    Times are seconds of a clock that never goes back. The newest state is never dropped: it is
-    returned by the first :meth:`take` at or after its time.
+    Times are monotonic seconds. The newest state is never dropped: the first :meth:`take` at or
+    after its due time returns it.
     """
 
     def __init__(self) -> None:
@@ -24,19 +25,19 @@ class Pacer(Generic[State]):
         self._sent_at: Optional[float] = None
 
     def offer(self, state: State) -> None:
-        """Take in a state (anything but None); it replaces one not published yet."""
+        """Handle a state (not None); it replaces one not published yet."""
         self._newest = state
         self._changed = True
 
     @property
     def holding_back(self) -> bool:
-        """Whether a change waits for its time."""
+        """Whether a change is pending."""
         return self._changed
 
     def due_in(self, now: float) -> float:
-        """Return the time until something is due [s], 0.0: now.
+        """Return the time until a state is due [s], 0.0 if it is due now.
 
-        Without any state it is the time of a repetition, so that a caller has a time to wait.
+        Without any state it is :data:`REPEAT_S`, so that a caller has a finite time to wait.
         """
         if self._newest is None:
             return REPEAT_S
@@ -46,7 +47,7 @@ class Pacer(Generic[State]):
         return max(0.0, self._sent_at + period_s - now)
 
     def take(self, now: float) -> Optional[State]:
-        """Return the state to publish now, or None if it is not time for one."""
+        """Return the state to publish now, None if none is due."""
         if self._newest is None or self.due_in(now) > 0.0:
             return None
         self._sent_at = now

@@ -7,7 +7,7 @@ from mhri.base.names import is_global_name
 from mhri.base.text import tidy_text
 from mhri.base.views import DeviceView
 
-MOST_SOURCES = 30
+MAX_SOURCES = 30
 ABSENT = '{} (not connected)'
 _Rows = Tuple[Tuple[str, str], ...]
 
@@ -15,12 +15,12 @@ _Rows = Tuple[Tuple[str, str], ...]
 def _rows(parameter: Any) -> List[Dict[str, Any]]:
     """Return the rows that have a name and a label."""
     rows = parameter if isinstance(parameter, list) else []
-    return [row for row in rows[:MOST_SOURCES] if isinstance(row, dict) and row.get('name')
+    return [row for row in rows[:MAX_SOURCES] if isinstance(row, dict) and row.get('name')
             and isinstance(row['name'], str) and isinstance(row.get('label'), str)]
 
 
 def source_rows(parameter: Any) -> _Rows:
-    """Return pairs (name, label); leave out invalid rows, and anything but a list.
+    """Return pairs (name, label) of the valid rows, () if the parameter is not a list.
 
     :param parameter: ``/mux/sources``: a list of dicts with ``name`` and ``label``
     """
@@ -28,7 +28,7 @@ def source_rows(parameter: Any) -> _Rows:
 
 
 def suspend_services(parameter: Any) -> Dict[str, str]:
-    """Return {name of a source: service that suspends its node}, for those that have one.
+    """Return {name of a source: service that suspends its node}, for sources with one.
 
     :param parameter: as for :func:`source_rows`
     """
@@ -37,8 +37,8 @@ def suspend_services(parameter: Any) -> Dict[str, str]:
             and is_global_name(row['suspend_service'])}
 
 
-def called_by_device(rows: _Rows, devices: Iterable[DeviceView]) -> _Rows:
-    """Return the rows labelled with the connected device's name, or marked as not connected."""
+def labelled_by_device(rows: _Rows, devices: Iterable[DeviceView]) -> _Rows:
+    """Return the rows labelled with the name of their device, or marked as not connected."""
     labels = {device.source: device for device in devices}
     return tuple((name, _label(label, labels.get(name, DeviceView(name)))) for name, label in rows)
 

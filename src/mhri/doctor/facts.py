@@ -1,22 +1,22 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the doctor sees and what it says: plain values between examination and judgement."""
+"""The doctor's facts and findings: plain values between examination and judgement."""
 from dataclasses import dataclass, field, replace
-from typing import Any, Collection, Dict, Iterable, List, Optional, Tuple
+from typing import Any, Collection, Dict, List, Optional, Tuple
 
 FAULT, WARNING, FINE = 'fault', 'warning', 'fine'
 SEVERITIES = (FAULT, WARNING, FINE)
 
-# How an address answered. REFUSED: the computer is there, the program is not. SILENT: nothing came
-# back in time. UNRESOLVED: its name is unknown here. STRANGER: something else answers there.
+# How an address responded. REFUSED: its computer responds, but the program is not running. SILENT:
+# no response in time. UNRESOLVED: its name is unknown here. STRANGER: another program responds.
 ANSWERS, REFUSED, SILENT, UNRESOLVED, STRANGER = (
     'answers', 'refused', 'silent', 'unresolved', 'stranger')
-# How a linked robot takes the key of this computer, and this computer that of the robot. EARLY: by
-# the clock here that is not valid yet. RUN_OUT: nor any more. UNTIMELY: so the robot says of the
-# one here. UNWELCOME: they are of two authorities.
+# Why a linked robot rejects the key of this computer, or this computer that of the robot. EARLY:
+# not valid yet by the clock here. RUN_OUT: expired. UNTIMELY: either of these by the robot's
+# clock. UNWELCOME: the keys were issued by different authorities.
 EARLY, RUN_OUT, UNTIMELY, UNWELCOME = 'early', 'run out', 'untimely', 'unwelcome'
 
-# So long a stream has to be listened to before its silence says anything [s].
+# A stream counts as silent after this long without a message [s].
 LISTENED_S = 0.4
 
 HOST = 'this computer'
@@ -26,28 +26,28 @@ SYSTEM = 'system'
 
 @dataclass(frozen=True)
 class Finding:
-    """One thing that the doctor looked at.
+    """The result of one check.
 
     ``check`` is its stable name for scripts; ``about`` the robot, node, computer or part concerned;
-    ``problem`` what is wrong (or, for FINE, what is right); ``shows`` how the operator notices;
-    ``remedy`` the command that mends it; ``sure`` how certain this is, '' for "fully".
+    ``problem`` the fault (or, for FINE, the good state); ``symptom`` what the operator
+    sees of it; ``remedy`` the command that fixes it; ``confidence`` how certain it is, '' if quite.
     """
 
     severity: str
     check: str
     about: str
     problem: str
-    shows: str = ''
+    symptom: str = ''
     remedy: str = ''
-    sure: str = ''
+    confidence: str = ''
 
 
 @dataclass(frozen=True)
 class Folder:
     """A folder that mhri writes to.
 
-    ``what`` it is for ('recordings', 'logs'), ``problem`` why mhri cannot write to it, '' if it
-    can; ``device`` is the same for two folders on one disk.
+    ``what`` is its purpose ('recordings', 'logs'), ``problem`` why mhri cannot write to it, '' if
+    it can; ``device`` is the same for two folders on one disk.
     """
 
     what: str
@@ -84,17 +84,17 @@ class Computer:
         return self.resolved.get(host) or ()
 
     def is_own(self, host: str) -> bool:
-        """Tell whether a host name or address means this computer."""
+        """Return whether a host name or address refers to this computer."""
         return any(is_loopback(address) or address in self.addresses
                    for address in self.addresses_of(host))
 
     def good_ip(self) -> Optional[str]:
-        """Return the address to give to robots, None if there is only loopback."""
+        """Return the address by which robots can reach this computer, None if only loopback."""
         outward = [address for address in self.addresses if not is_loopback(address)]
         return self.route_ip or (outward[0] if outward else None)
 
     def own_host(self) -> Tuple[str, str]:
-        """Return (host that programs started here advertise, the variable that says so or '')."""
+        """Return (host that programs started here advertise, the variable that sets it or '')."""
         for key in ('ROS_HOSTNAME', 'ROS_IP'):
             if self.variables.get(key):
                 return self.variables[key], key
@@ -103,10 +103,10 @@ class Computer:
 
 @dataclass(frozen=True)
 class Master:
-    """The master: its configured URI, how it answered, in words if it did not, and how fast [s].
+    """The master: its configured URI, its response, the error text, and the response time [s].
 
-    ``elsewhere`` are the URIs of other masters: if this one does not answer, those that do; if it
-    has no mux, those that have one.
+    ``elsewhere`` are the URIs of other masters: of responding ones if this one does not respond,
+    of ones with a mux if this one has none.
     """
 
     uri: str = 'http://localhost:11311'
@@ -121,7 +121,7 @@ class Master:
 
 @dataclass(frozen=True)
 class Graph:
-    """What the master knows: {topic: nodes}, {topic: type}, all parameters as a nested dict."""
+    """The state of the master: {topic: nodes}, {topic: type}, parameters as a nested dict."""
 
     publishers: Dict[str, Tuple[str, ...]] = field(default_factory=dict)
     subscribers: Dict[str, Tuple[str, ...]] = field(default_factory=dict)
@@ -135,7 +135,7 @@ class Graph:
                        for nodes in group.values() for node in nodes})
 
     def of(self, names: Collection[str]) -> 'Graph':
-        """Return the part of it that concerns some nodes."""
+        """Return the part of the graph that concerns some nodes."""
         def part(group: Dict[str, Tuple[str, ...]]) -> Dict[str, Tuple[str, ...]]:
             return {topic: kept for topic, nodes in group.items()
                     for kept in [tuple(node for node in nodes if node in names)] if kept}
@@ -144,7 +144,7 @@ class Graph:
                        services=part(self.services))
 
     def state(self) -> List[List[Any]]:
-        """Return it as ``getSystemState`` does."""
+        """Return the graph in the form of ``getSystemState``."""
         return [[[name, list(nodes)] for name, nodes in group.items()]
                 for group in (self.publishers, self.subscribers, self.services)]
 
@@ -156,7 +156,7 @@ class Graph:
 
 @dataclass(frozen=True)
 class Connection:
-    """A connection as a node reports it: ``out`` or not, its topic, who is at the other end.
+    """A connection as a node reports it: ``out`` or not, its topic, and the other end.
 
     ``peer`` is the other node's name if outgoing, its URI if incoming; ``address`` the real IPv4
     address of the other end, '' if not reported.
@@ -170,11 +170,11 @@ class Connection:
 
 @dataclass(frozen=True)
 class Node:
-    """A registered node and how it answered.
+    """A registered node and its response.
 
-    ``publications`` and ``subscriptions`` are {topic: type} in its own words, ``connections`` its
-    :class:`Connection` list; each is None if it did not say. ``uri_later`` is where it was
-    registered at the end of the examination.
+    ``publications`` and ``subscriptions`` are {topic: type} as reported by the node,
+    ``connections`` its :class:`Connection` list; each is None if not reported. ``uri_later`` is its
+    registered URI at the end of the examination.
     """
 
     name: str
@@ -191,13 +191,13 @@ class Node:
 
 @dataclass(frozen=True)
 class Stream:
-    """What a publisher said when asked for a topic, and the stamps that came.
+    """A publisher's response to a subscription, and the received stamps.
 
-    ``problem`` says why there was no connection; ``listened_s`` is how long the doctor waited for
-    messages [s], 0 if it did not; ``samples`` are (received, stamp) pairs by the clock here and the
-    sender's [s]; ``refused`` what the gates refused, in their own words: '/node: twist, 3 times'.
-    ``frames`` are those that odometry names; ``beams`` of a scan are (how many, how many measured
-    something, how many say that nothing is there, how many say what may as well mean a dead laser).
+    ``problem`` is the reason for a failed connection; ``listened_s`` how long the doctor waited
+    for messages [s], 0 if it did not; ``samples`` are (received, stamp) pairs by the clock here and
+    the sender's [s]; ``refused`` what the mux rejected, as published: '/node: robot_select, 3
+    times'. ``frames`` are the frames of odometry; ``beams`` of a scan are (all, with a measurement,
+    with free space, ambiguous: free space or a dead laser).
     """
 
     topic: str
@@ -216,13 +216,14 @@ class Stream:
 
 @dataclass(frozen=True)
 class LinkNote:
-    """What this computer's side of the link to a robot on a master of its own says of itself.
+    """The status of this computer's side of the link to a robot on a master of its own.
 
-    ``endpoint`` is whom it calls, ``router`` whether that is a router, ``secret`` whether with
-    keys; ``heard`` is ``yes``, ``no`` (not any more) or ``never``. ``problem`` says why it could
-    not start, ``trouble`` what with: ``library``, ``keys`` or ``endpoint``. ``own`` and ``peer``
-    are the versions of both sides: {``mhri`` or ``zenoh``: version}. ``reach`` says how the
-    endpoint answers, with keys also how they are taken; '' if nobody asked.
+    ``endpoint`` is the address that it connects to, ``router`` whether that is a router,
+    ``secret`` whether keys are used; ``heard`` whether the robot is received: ``yes``, ``no`` (not
+    any more) or ``never``. ``problem`` is the reason why it could not start, ``trouble`` the cause:
+    ``library``, ``endpoint``, or for keys ``missing``, ``expired``, ``early`` or ``wrong``. ``own``
+    and ``peer`` are the versions of both sides: {``mhri`` or ``zenoh``: version}. ``reach`` is the
+    response of the endpoint, or why keys are rejected; '' if it was not tested.
     """
 
     robot: str
@@ -239,22 +240,26 @@ class LinkNote:
 
 @dataclass(frozen=True)
 class KeysSeen:
-    """The keys for links on this computer: where, why they are of no use; an authority beside."""
+    """The keys for links on this computer: folder, problem, and whether an authority exists.
+
+    ``cause`` is the cause of ``problem``, like ``trouble`` of :class:`LinkNote`.
+    """
 
     folder: str = ''
     problem: str = ''
     authority: bool = False
+    cause: str = ''
 
 
 @dataclass(frozen=True)
 class Facts:
-    """Everything that the doctor saw.
+    """All facts of one examination.
 
-    ``later`` is the graph, ``later_nodes`` the nodes asked once more at the end, if something
-    looked odd: the doctor only reports what is odd both times. ``known`` maps message types to
-    their md5 sum on this computer, None if it has none. ``wanted`` are the robots asked for, () for
-    all. ``pad_errors`` and ``mux_error`` say what is wrong with the files of pads and of the mux.
-    ``linked`` are the links to robots on masters of their own; ``unheard`` the topics to which
+    ``later`` is the graph, ``later_nodes`` the suspicious nodes, queried again at the end: the
+    doctor only reports a fault present both times. ``known`` maps message types to their md5 sum
+    on this computer, None if not installed. ``requested`` are the robots to examine, () for all.
+    ``pad_errors`` and ``mux_error`` are the errors in the files of pads and of the mux.
+    ``linked`` are the links to robots on masters of their own; ``unheard`` the topics for which
     there was no time to listen.
     """
 
@@ -266,7 +271,7 @@ class Facts:
     known: Dict[str, Optional[str]] = field(default_factory=dict)
     later: Optional[Graph] = None
     later_nodes: Dict[str, Node] = field(default_factory=dict)
-    wanted: Tuple[str, ...] = ()
+    requested: Tuple[str, ...] = ()
     template_errors: Tuple[str, ...] = ()
     pad_errors: Tuple[str, ...] = ()
     mux_error: str = ''
@@ -276,20 +281,20 @@ class Facts:
     unheard: Tuple[str, ...] = ()
 
     def with_later(self, graph: Graph, nodes: Dict[str, Node]) -> 'Facts':
-        """Return these facts plus the second look."""
+        """Return these facts with those of the second query."""
         return replace(self, later=graph, later_nodes=nodes)
 
     def answering(self, name: str) -> Optional[Node]:
-        """Return a node that answers, or None."""
+        """Return a node if it responds, else None."""
         node = self.nodes.get(name)
         return node if node is not None and node.state == ANSWERS else None
 
     def is_remote(self, node: Node) -> bool:
-        """Tell whether a node is on another computer, as far as its address says."""
+        """Return whether a node is on another computer, according to its address."""
         return bool(node.host) and not self.computer.is_own(node.host)
 
     def several_computers(self) -> bool:
-        """Tell whether other computers take part, too."""
+        """Return whether the system includes other computers."""
         if self.master.state != STRANGER and not self.computer.is_own(self.master.host) \
                 and self.computer.addresses_of(self.master.host):
             return True
@@ -297,20 +302,12 @@ class Facts:
 
 
 def is_ipv4(text: str) -> bool:
-    """Tell whether a text is an IPv4 address in four decimal parts."""
+    """Return whether a text is an IPv4 address in four decimal parts."""
     parts = text.split('.')
     return len(parts) == 4 and all(part.isdigit() and len(part) < 4 and int(part) < 256
                                    for part in parts)
 
 
 def is_loopback(address: str) -> bool:
-    """Tell whether an address or name reaches only the computer that uses it."""
+    """Return whether an address or name reaches only the computer that uses it."""
     return address in ('localhost', '::1') or (is_ipv4(address) and address.startswith('127.'))
-
-
-def listed(names: Iterable[str], most: int = 4) -> str:
-    """Return names as a person lists them: 'a, b and 3 more'."""
-    names = list(names)
-    if len(names) <= most:
-        return ', '.join(names)
-    return '{} and {} more'.format(', '.join(names[:most]), len(names) - most)

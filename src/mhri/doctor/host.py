@@ -3,9 +3,10 @@
 """The doctor on the computer it runs on: ROS variables, folders, workspace, packages, master."""
 from typing import Dict, List, Optional, Tuple
 
+from mhri.base.text import listed
 from mhri.doctor.facts import (
-    ANSWERS, Computer, Facts, FAULT, Finding, FINE, Folder, HOST, is_ipv4, is_loopback, listed,
-    MASTER, Master, REFUSED, STRANGER, UNRESOLVED, WARNING)
+    ANSWERS, Computer, Facts, FAULT, Finding, FINE, Folder, HOST, is_ipv4, is_loopback, MASTER,
+    Master, REFUSED, STRANGER, UNRESOLVED, WARNING)
 
 MB = 1000 * 1000
 # The recorder's limits: it warns below the first and stops at the second.
@@ -19,23 +20,23 @@ def find_on_host(facts: Facts) -> List[Finding]:
              + _packages(facts.computer) + [
                  Finding(FAULT, 'template_bad', HOST, 'a robot type is unusable: ' + text,
                          'robots of that type are driven as generic, or not offered',
-                         'mend the file named above, or take it away')
+                         'fix the file named above, or remove it')
                  for text in facts.template_errors] + [
                  Finding(WARNING, 'pad_bad', HOST, 'a pad profile is left out: ' + text,
                          'its pad drives with another profile, or not at all',
-                         'mend the file named above, or make it anew: rosrun mhri mhri_joy '
+                         'fix the file named above, or make a new one: rosrun mhri mhri_joy '
                          '--calibrate <name>')
                  for text in facts.pad_errors])
     return found
 
 
 def _fine_if_none(found: List[Finding], check: str, about: str, words: str) -> List[Finding]:
-    """Return findings; if there are none, one that says so in words."""
+    """Return findings; without any, a FINE one with a text."""
     return found or [Finding(FINE, check, about, words)]
 
 
 def _export(facts: Facts) -> str:
-    """Return the command that tells other computers the right address of this one."""
+    """Return the command that sets the address under which other computers reach this one."""
     several = facts.several_computers()
     address = facts.computer.good_ip() if several else '127.0.0.1'
     if address is None:
@@ -45,7 +46,7 @@ def _export(facts: Facts) -> str:
 
 
 def _variables(facts: Facts) -> List[Finding]:
-    """Judge ROS_MASTER_URI, ROS_IP and ROS_HOSTNAME."""
+    """Check ROS_MASTER_URI, ROS_IP and ROS_HOSTNAME."""
     computer = facts.computer
     found = []
     if not computer.variables.get('ROS_MASTER_URI'):
@@ -66,7 +67,7 @@ def _variables(facts: Facts) -> List[Finding]:
 
 
 def _known_uri(facts: Facts) -> str:
-    """Return the URI of a master that answers, or a placeholder."""
+    """Return the URI of a master that responds, or a placeholder."""
     if facts.master.state == ANSWERS:
         return facts.master.uri
     return (facts.master.elsewhere or (
@@ -102,7 +103,7 @@ def _address_problem(facts: Facts, host: str, variable: str) -> Optional[Finding
 
 
 def _both(facts: Facts) -> List[Finding]:
-    """Judge two variables that contradict each other."""
+    """Report ROS_HOSTNAME and ROS_IP if they contradict each other."""
     name, address = (facts.computer.variables.get(key) for key in ('ROS_HOSTNAME', 'ROS_IP'))
     if not (name and address) or name == address \
             or address in facts.computer.addresses_of(name):
@@ -112,7 +113,7 @@ def _both(facts: Facts) -> List[Finding]:
 
 
 def _unset(facts: Facts) -> List[Finding]:
-    """Judge that neither variable is set: programs then advertise the computer's name."""
+    """Check the computer's name, which programs advertise if neither variable is set."""
     computer = facts.computer
     addresses = computer.addresses_of(computer.name)
     said = 'neither ROS_IP nor ROS_HOSTNAME is set, so programs here are known as "{}"'.format(
@@ -128,13 +129,13 @@ def _unset(facts: Facts) -> List[Finding]:
 
 
 def _folders(computer: Computer) -> List[Finding]:
-    """Judge the folders that mhri writes to; two on one disk are one finding."""
+    """Check the folders that mhri writes to; two on one disk give one finding."""
     found: Dict[Tuple[str, str], Finding] = {}
     for folder in computer.folders:
         problem = _folder_problem(folder)
         if problem:
             found.setdefault((problem.check, folder.device or folder.path), problem)
-    return _fine_if_none(list(found.values()), 'disk', HOST, 'space to write: ' + listed(
+    return _fine_if_none(list(found.values()), 'disk', HOST, 'free disk space: ' + listed(
         _free(folder) for folder in computer.folders))
 
 
@@ -161,7 +162,7 @@ def _folder_problem(folder: Folder) -> Optional[Finding]:
 
 
 def _workspace(computer: Computer) -> List[Finding]:
-    """Judge whether the workspace with mhri is sourced, and only that one."""
+    """Check that the workspace with mhri is sourced, and only that one."""
     if computer.package_path is None:
         return [Finding(
             FAULT, 'workspace_missing', HOST, 'mhri is not on ROS_PACKAGE_PATH ({})'.format(
@@ -183,7 +184,7 @@ def _workspace(computer: Computer) -> List[Finding]:
 
 
 def _packages(computer: Computer) -> List[Finding]:
-    """Judge what mhri depends on."""
+    """Check the dependencies of mhri."""
     missing = {name: problem for name, problem in computer.packages.items() if problem}
     return _fine_if_none([
         Finding(WARNING if name in SLOWER_WITHOUT else FAULT, 'package_missing', HOST,
@@ -195,14 +196,14 @@ def _packages(computer: Computer) -> List[Finding]:
         'packages', HOST, 'all {} packages that mhri needs are here'.format(len(computer.packages)))
 
 
-# What mhri can do without, and what the operator notices.
-SLOWER_WITHOUT = {'libturbojpeg': 'a jpeg picture takes three times as long'}
+# Optional packages, and the effect of their absence.
+SLOWER_WITHOUT = {'libturbojpeg': 'a jpeg picture takes longer, up to six times'}
 # rosdep keys that are neither ROS packages nor names of system packages.
 _SYSTEM = {'libturbojpeg': 'libturbojpeg0-dev'}
 
 
 def package_of(name: str, computer: Computer) -> str:
-    """Return the system's package that brings a ROS package."""
+    """Return the system package that contains a ROS package."""
     if name.startswith('python3-'):
         return name
     if name in _SYSTEM:
@@ -213,7 +214,7 @@ def package_of(name: str, computer: Computer) -> str:
 
 
 def use_other(master: Master) -> str:
-    """Return the commands that turn to other masters, one for each."""
+    """Return the commands that switch to other masters, one for each."""
     return '   # or: '.join('export ROS_MASTER_URI={}'.format(uri) for uri in master.elsewhere[:4])
 
 
@@ -221,7 +222,7 @@ _NOTHING = 'no robot is found, programs end with "unable to communicate with mas
 
 
 def find_on_master(facts: Facts) -> List[Finding]:
-    """Return the findings about the master alone."""
+    """Return the findings about the master itself."""
     master, computer = facts.master, facts.computer
     if master.uri_problem:
         return [Finding(FAULT, 'master_uri_bad', MASTER, 'ROS_MASTER_URI={!r}: {}'.format(

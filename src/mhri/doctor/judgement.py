@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The doctor's judgement: from the facts (:mod:`mhri.doctor.facts`) to findings."""
+"""Derives findings from the facts of an examination (:mod:`mhri.doctor.facts`)."""
 from typing import Any, Dict, Iterable, List, Mapping, Sequence, Set
 
 from mhri.base.robot_types import RobotType
@@ -36,17 +36,17 @@ def diagnose(facts: Facts, types: Mapping[str, RobotType], ignore: IgnoreList) -
 
 
 def _of_wanted(facts: Facts, found: List[Finding]) -> List[Finding]:
-    """Leave out findings about robots that nobody asked for."""
-    if not facts.wanted:
+    """Drop findings about robots that were not requested."""
+    if not facts.requested:
         return found
-    others = {robot_of(node) for node in facts.nodes} - set(facts.wanted) - {''}
+    others = {robot_of(node) for node in facts.nodes} - set(facts.requested) - {''}
     return [item for item in found if item.about.lstrip('/').split('/')[0] not in others]
 
 
 def odd_ones(facts: Facts, robots: Iterable[Robot]) -> Set[str]:
-    """Return the names of the nodes to ask a second time before reporting anything about them.
+    """Return the names of the nodes to query again before reporting a fault.
 
-    A node that is just coming or going looks wrong for a moment.
+    A node that is starting or stopping looks faulty for a moment.
 
     :param robots: list of :class:`mhri.doctor.robots.Robot`
     """
@@ -58,22 +58,23 @@ def odd_ones(facts: Facts, robots: Iterable[Robot]) -> Set[str]:
 
 
 def exit_status(findings: Sequence[Finding]) -> int:
-    """Return 1 if something is wrong, else 0."""
+    """Return 1 if there are faults or warnings, else 0."""
     return int(any(item.severity != FINE for item in findings))
 
 
 def as_lines(findings: Sequence[Finding], took_s: float) -> List[str]:
-    """Return the report as lines of text for a person."""
+    """Return the report as lines of text for humans."""
     lines = []
     for item in findings:
         lines.append('{}  {}: {}'.format(_MARKS[item.severity], item.about, item.problem))
-        lines += ['      {:<9} {}'.format(key, text) for key, text in (
-            ('shows as:', item.shows), ('mend:', item.remedy), ('sure:', item.sure)) if text]
+        lines += ['      {:<11} {}'.format(key, text) for key, text in (
+            ('symptom:', item.symptom), ('fix:', item.remedy),
+            ('confidence:', item.confidence)) if text]
     counts = {severity: sum(1 for item in findings if item.severity == severity)
               for severity in SEVERITIES}
     lines.append('{} faults, {} warnings, {} fine; examined in {:.1f} s'.format(
         counts[FAULT], counts[WARNING], counts[FINE], took_s))
-    # Names come from whoever registers at the master: the terminal would obey escape sequences.
+    # Any program can register any name: escape sequences must not reach the terminal.
     return [''.join(char if char.isprintable() else '?' for char in line) for line in lines]
 
 

@@ -1,32 +1,33 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The doctor on links to robots that have a master of their own (``mhri_link``), and on keys."""
+"""Checks of the links to robots with their own master (``mhri_link``), and of keys."""
 from typing import Dict, List, Set
 
+from mhri.base.text import listed
 from mhri.doctor.facts import (
-    ANSWERS, EARLY, Facts, FAULT, Finding, FINE, Graph, HOST, LinkNote, listed, REFUSED, RUN_OUT,
+    ANSWERS, EARLY, Facts, FAULT, Finding, FINE, Graph, HOST, LinkNote, REFUSED, RUN_OUT,
     UNRESOLVED, UNTIMELY, UNWELCOME, WARNING)
 from mhri.doctor.robots import clock_offset, LINK
 
-# What the host's side says of itself, as a parameter below its name.
+# The status that the host's side publishes, as a parameter below its name.
 NOTE = 'link'
-# With a clock that is farther off than this a key may be refused [s].
+# With a larger clock offset a key may be rejected [s].
 CLOCK_S = 300.0
-_STANDS = 'the robot stands, and its row says that nothing is heard'
+_STANDS = 'the robot stands still, and its row says "not heard"'
 _SEND_AGAIN = 'turtlebot_deploy.sh USER@IP --link   # then start the robot again, and mhri here'
-# What a side says that could not start, by the kind of its trouble: check, and remedy.
+# Causes for which a side could not start: check, and remedy.
 _TROUBLES = {
     'library': ('zenoh_missing', 'utils/host/mhri_run.sh --link {}=<address>   # installs it'),
     'endpoint': ('link_endpoint', 'utils/host/mhri_run.sh --link {}=<address>   # a right one')}
-_KEY_CHECKS = (('there is no', 'keys_missing'), ('run out', 'keys_expired'),
-               ('not begun', 'keys_clock'))
+# The check for each cause of unusable keys.
+_KEY_CHECKS = {'missing': 'keys_missing', 'expired': 'keys_expired', 'early': 'keys_clock'}
 _KEY_REMEDIES = {
     'keys_missing': 'utils/host/mhri_keys.sh put <name of this computer\'s key>',
     'keys_expired': 'utils/host/mhri_keys.sh renew <name>; utils/host/mhri_keys.sh put <name>',
     'keys_clock': 'timedatectl   # sudo timedatectl set-ntp true, or: sudo date -s <the time>',
     'keys_wrong': 'utils/host/mhri_keys.sh check   # then put the right key in place'}
 _CLOCK_THERE = 'on the robot: date   # sudo timedatectl set-ntp true, or: sudo date -s <the time>'
-# How keys are not taken: check, what is wrong, and the remedy.
+# Reasons for rejected keys: check, problem, and remedy.
 _TAKEN = {
     EARLY: ('keys_clock', 'by the clock here the time of its key has not begun', 'date   # wrong '
             'here? sudo timedatectl set-ntp true; right? mhri_keys.sh renew {0}, and put it there'),
@@ -39,7 +40,7 @@ _TAKEN = {
 
 
 def links_of(graph: Graph) -> List[LinkNote]:
-    """Return what the host's sides of links say of themselves, sorted by robot."""
+    """Return the status of the host's side of each link, sorted by robot."""
     found = []
     for robot, below in sorted(graph.parameters.items()):
         node = below.get(LINK) if isinstance(below, dict) else None
@@ -54,12 +55,12 @@ def links_of(graph: Graph) -> List[LinkNote]:
 
 
 def unheard(facts: Facts) -> Set[str]:
-    """Return the robots whose links explain everything else that is wrong with them."""
+    """Return the robots whose link fault explains all their other faults."""
     return {note.robot for note in facts.linked if note.problem or note.heard != 'yes'}
 
 
 def find_on_linked(facts: Facts) -> List[Finding]:
-    """Return the findings about links to robots on masters of their own, and about keys."""
+    """Return the findings about links to robots with their own master, and about keys."""
     found = _keys(facts) + _same_end(facts)
     for note in facts.linked:
         found += (_not_started(note) or _ended(facts, note) or _silent(note)
@@ -69,15 +70,11 @@ def find_on_linked(facts: Facts) -> List[Finding]:
     return found
 
 
-def _key_check(problem: str) -> str:
-    return next((check for words, check in _KEY_CHECKS if words in problem), 'keys_wrong')
-
-
 def _keys(facts: Facts) -> List[Finding]:
-    """Judge the keys in place on this computer."""
+    """Check the keys installed on this computer."""
     keys = facts.keys
     if keys.problem:
-        check = _key_check(keys.problem)
+        check = _KEY_CHECKS.get(keys.cause, 'keys_wrong')
         return [Finding(FAULT, check, HOST, 'the key in {} cannot be used: {}'.format(
             keys.folder, keys.problem), 'linked robots do not let this computer in',
             _KEY_REMEDIES[check])]
@@ -86,25 +83,25 @@ def _keys(facts: Facts) -> List[Finding]:
         return [Finding(
             WARNING, 'keys_missing', HOST, 'there is an authority for keys here, but {} linked '
             'without'.format(listed(open_links) + (' is' if len(open_links) == 1 else ' are')),
-            'whoever reaches the robot can drive it',
+            'anybody on its network can drive the robot',
             _KEY_REMEDIES['keys_missing'] + '; then one on each robot, and start both again')]
     return []
 
 
 def _not_started(note: LinkNote) -> List[Finding]:
-    """Say why this computer's side of a link does not start."""
+    """Report why this computer's side of a link does not start."""
     if not note.problem:
         return []
     check, remedy = _TROUBLES.get(note.trouble, ('', ''))
     if not check:
-        check = _key_check(note.problem)
+        check = _KEY_CHECKS.get(note.trouble, 'keys_wrong')
         remedy = _KEY_REMEDIES[check]
     return [Finding(FAULT, check, note.robot, 'its link does not start here: ' + note.problem,
                     _STANDS, remedy.format(note.robot))]
 
 
 def _ended(facts: Facts, note: LinkNote) -> List[Finding]:
-    """Judge a link that was here and is not running now."""
+    """Report a link that was started here but is not running."""
     if '/{}/{}'.format(note.robot, LINK) in facts.nodes:
         return []
     return [Finding(
@@ -115,15 +112,15 @@ def _ended(facts: Facts, note: LinkNote) -> List[Finding]:
 
 
 def _silent(note: LinkNote) -> List[Finding]:
-    """Say why a robot is not heard over its link, as far as the endpoint shows."""
+    """Report why nothing is received over a link, as far as the endpoint shows."""
     if note.heard == 'yes':
         return []
     where, robot = note.endpoint, note.robot
-    # Without a key nobody is listened to, unless that is said.
+    # Without a key a robot accepts no connection, unless it was started with --keys off.
     keys_off = '' if note.secret else ' --keys off'
     if note.reach in _TAKEN:
         check, problem, remedy = _TAKEN[note.reach]
-        return [Finding(FAULT, check, robot, 'is not heard over its link ({}): {}'.format(
+        return [Finding(FAULT, check, robot, 'sends nothing over its link ({}): {}'.format(
             where, problem), _STANDS, remedy.format(robot))]
     if note.router and note.reach not in (ANSWERS, ''):
         return [Finding(
@@ -131,8 +128,8 @@ def _silent(note: LinkNote) -> List[Finding]:
             '{}'.format(where, _reached(note.reach)), _STANDS, 'on the computer of the router: '
             'rosrun mhri mhri_link --side router --listen 0.0.0.0:{}{}   # and its firewall'.format(
                 where.rpartition(':')[2], keys_off))]
-    words = 'was never heard over its link ({})' if note.heard == 'never' else \
-        'is not heard over its link any more ({})'
+    words = 'has never sent anything over its link ({})' if note.heard == 'never' else \
+        'no longer sends anything over its link ({})'
     keys = '; utils/host/mhri_keys.sh check, and there: date, ls ~/mhri/keys' if note.secret else ''
     if note.router or note.reach == ANSWERS:
         return [Finding(
@@ -155,7 +152,7 @@ def _reached(reach: str) -> str:
 
 
 def _versions(note: LinkNote) -> List[Finding]:
-    """Compare both sides of a link."""
+    """Compare the versions of both sides of a link."""
     return [Finding(
         WARNING, check, note.robot, 'both sides of its link differ in {}: {} here, {} on the '
         'robot'.format(what, note.own.get(key), note.peer.get(key)),
@@ -166,7 +163,7 @@ def _versions(note: LinkNote) -> List[Finding]:
 
 
 def _same_end(facts: Facts) -> List[Finding]:
-    """Find one robot that is linked by two names."""
+    """Report a robot that is linked by two names."""
     names: Dict[str, List[str]] = {}
     for note in facts.linked:
         if note.endpoint and not note.router:
@@ -179,7 +176,7 @@ def _same_end(facts: Facts) -> List[Finding]:
 
 
 def _twice(facts: Facts, note: LinkNote) -> List[Finding]:
-    """Find a linked robot that is on this master, too: nodes that publish what its link does."""
+    """Report a linked robot that is also on this master: nodes publish the topics of its link."""
     own = '/{}/{}'.format(note.robot, LINK)
     others = sorted({
         node for topic, nodes in facts.graph.publishers.items()
@@ -195,7 +192,7 @@ def _twice(facts: Facts, note: LinkNote) -> List[Finding]:
 
 
 def _clock(facts: Facts, note: LinkNote) -> List[Finding]:
-    """Judge the clock of a robot that is linked by keys: they are good for a time."""
+    """Check the clock of a robot linked with keys, which are only valid for a period."""
     if not note.secret:
         return []
     for stream in facts.streams:

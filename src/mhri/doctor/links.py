@@ -1,20 +1,20 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The doctor on connections: who should hear whom and does not, and why; message definitions."""
+"""Checks for missing connections and their cause, and of message definitions."""
 from typing import Dict, Iterator, List, Mapping, Set, Tuple
 
-from mhri.doctor.facts import (
-    Facts, FAULT, Finding, FINE, Graph, HOST, listed, Node, SYSTEM, WARNING)
+from mhri.base.text import listed
+from mhri.doctor.facts import Facts, FAULT, Finding, FINE, Graph, HOST, Node, SYSTEM, WARNING
 from mhri.doctor.host import package_of
 from mhri.doctor.nodes import robot_of
 
 # Topic, name of its publisher, name of its subscriber.
 _Link = Tuple[str, str, str]
-# From one computer to another.
+# (Source, target) computer.
 _Way = Tuple[str, str]
 
 ANY = '*'
-# The packages whose messages mhri itself reads; a robot may have others of its own.
+# Packages whose messages mhri itself reads; robots may have additional ones.
 _READ = ('diagnostic_msgs', 'geometry_msgs', 'mhri', 'nav_msgs', 'sensor_msgs', 'std_msgs',
          'tf2_msgs', 'turtlesim')
 _ONE_WAY = 'topics are listed, but no data arrives, or in one direction only'
@@ -27,9 +27,12 @@ def find_on_links(facts: Facts) -> List[Finding]:
     return _connections(facts) + _definitions(facts)
 
 
-def expected_links(facts: Facts, nodes: Mapping[str, Node],
+def expected_links(nodes: Mapping[str, Node],
                    graph: Graph) -> Iterator[Tuple[str, Node, Node]]:
-    """Yield (topic, publisher, subscriber) that should be connected: all say so, both answer."""
+    """Yield (topic, publisher, subscriber) that should be connected.
+
+    Master and both nodes list the topic, and both nodes respond.
+    """
     for topic, publishers in sorted(graph.publishers.items()):
         for publisher in publishers:
             sender = nodes.get(publisher)
@@ -44,7 +47,7 @@ def expected_links(facts: Facts, nodes: Mapping[str, Node],
 
 
 def is_connected(topic: str, sender: Node, listener: Node) -> bool:
-    """Tell whether a publisher counts a subscriber among its connections."""
+    """Return whether a publisher lists a subscriber among its connections."""
     return any(link.out and link.topic == topic and link.peer == listener.name
                for link in sender.connections or ())
 
@@ -53,19 +56,19 @@ def missing_links(facts: Facts, nodes: Mapping[str, Node], graph: Graph) -> Set[
     """Return the (topic, publisher name, subscriber name) that should be connected but are not."""
     alive = {name: node for name, node in nodes.items() if facts.answering(name)}
     return {(topic, sender.name, listener.name)
-            for topic, sender, listener in expected_links(facts, alive, graph)
+            for topic, sender, listener in expected_links(alive, graph)
             if not is_connected(topic, sender, listener)}
 
 
 def _present_hosts(facts: Facts) -> Set[Tuple[str, str, str, str]]:
     """Return the (host of publisher, host of subscriber, publisher, subscriber) with a link."""
     return {(sender.host, listener.host, sender.name, listener.name)
-            for topic, sender, listener in expected_links(facts, facts.nodes, facts.graph)
+            for topic, sender, listener in expected_links(facts.nodes, facts.graph)
             if is_connected(topic, sender, listener)}
 
 
 def _connections(facts: Facts) -> List[Finding]:
-    """Say why the links missing in both looks are not connected."""
+    """Report the cause of links that are missing in both queries."""
     missing = missing_links(facts, facts.nodes, facts.graph)
     if facts.later is None:
         missing = set()
@@ -82,7 +85,7 @@ def _connections(facts: Facts) -> List[Finding]:
         if said[0] != said[1] and ANY not in said:
             found.append(_type_differs(topic, publisher, subscriber, said))
         elif sender.host == listener.host or (sender.host, listener.host) in hosts:
-            found.append(_not_connected(facts, topic, publisher, subscriber, said[0]))
+            found.append(_not_connected(topic, publisher, subscriber, said[0]))
         else:
             ways.setdefault((sender.host, listener.host), []).append(
                 (topic, publisher, subscriber))
@@ -99,8 +102,8 @@ def _type_differs(topic: str, publisher: str, subscriber: str, said: Tuple[str, 
             topic, topic, topic))
 
 
-def _not_connected(facts: Facts, topic: str, publisher: str, subscriber: str, kind: str) -> Finding:
-    """Judge an open way between types of the same name: their definitions differ."""
+def _not_connected(topic: str, publisher: str, subscriber: str, kind: str) -> Finding:
+    """Report differing definitions of a type: other links between the computers work."""
     return Finding(
         FAULT, 'definition_differs', publisher, '{} does not get {} from {}, though others are '
         'connected the same way: their definitions of {} differ'.format(
@@ -110,7 +113,7 @@ def _not_connected(facts: Facts, topic: str, publisher: str, subscriber: str, ki
 
 
 def _no_way(facts: Facts, hosts: _Way, links: List[_Link]) -> Finding:
-    """Judge a missing way from one computer to another: the network, or a wrong name."""
+    """Report that one computer cannot reach another: the network, or a wrong name."""
     source, target = hosts
     own = facts.computer.is_own(source)
     topics = sorted({topic for topic, _, _ in links})
@@ -131,7 +134,7 @@ def _no_way(facts: Facts, hosts: _Way, links: List[_Link]) -> Finding:
 
 def _back(facts: Facts, present: Set[Tuple[str, str, str, str]],
           ways: Dict[_Way, List[_Link]]) -> List[Finding]:
-    """Say for each remote robot whether it reaches this computer, as far as seen."""
+    """Report for each remote robot whether it reaches this computer, if known."""
     found = []
     robots: Dict[str, Set[str]] = {}
     for node in facts.nodes.values():
@@ -146,12 +149,12 @@ def _back(facts: Facts, present: Set[Tuple[str, str, str, str]],
         elif not any(facts.computer.is_own(source) for source, _ in ways):
             found.append(Finding(
                 FINE, 'reaches_back', robot, 'answers this computer; whether it reaches back '
-                'cannot be told, since it listens to nothing here yet', sure='unknown'))
+                'cannot be told, since it listens to nothing here yet', confidence='unknown'))
     return found
 
 
 def _definitions(facts: Facts) -> List[Finding]:
-    """Compare the md5 sums: publishers with this computer, and with each other."""
+    """Compare the md5 sums of publishers with this computer, and with each other."""
     found = []
     kinds: Dict[Tuple[str, str], List[str]] = {}
     topics: Dict[str, Dict[str, Tuple[str, str]]] = {}
@@ -184,6 +187,6 @@ def _definitions(facts: Facts) -> List[Finding]:
             'sudo apt install {}   # or source the workspace that has them'.format(' '.join(sorted(
                 {package_of(kind.split('/')[0], facts.computer) for kind in unknown})))))
     if not found and topics:
-        found.append(Finding(FINE, 'definitions', SYSTEM, 'the messages of {} topics are defined '
-                             'as here'.format(len(topics))))
+        found.append(Finding(FINE, 'definitions', SYSTEM, 'all {} topics use matching '
+                             'message definitions'.format(len(topics))))
     return found

@@ -1,17 +1,18 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The doctor on nodes: which answer, which are dead, which share a name."""
+"""Checks of the nodes: responding, dead, sharing a name."""
 from typing import Callable, Collection, Dict, Iterable, List, Set, Tuple, TypeVar
 
+from mhri.base.text import listed
 from mhri.doctor.facts import (
-    ANSWERS, Facts, FAULT, Finding, FINE, Graph, is_ipv4, is_loopback, listed, MASTER, Node,
-    REFUSED, SILENT, STRANGER, SYSTEM, UNRESOLVED, WARNING)
+    ANSWERS, Facts, FAULT, Finding, FINE, Graph, is_ipv4, is_loopback, MASTER, Node, REFUSED,
+    SILENT, STRANGER, SYSTEM, UNRESOLVED, WARNING)
 
 CLEAN_UP = 'rosnode cleanup   # answer y: it removes dead nodes from the master'
 _GHOST = 'a robot or node is listed that is not there; others try in vain to reach it'
-# Every node of rospy and roscpp has these, so they prove nothing about which node it is.
+# Every node of rospy and roscpp has these topics, so they do not identify a node.
 COMMON = ('/rosout', '/rosout_agg', '/clock')
-# What nodes are grouped by; sortable.
+# Sortable key by which nodes are grouped.
 _Key = TypeVar('_Key', str, Tuple[str, ...])
 
 
@@ -29,7 +30,7 @@ def start_robot(facts: Facts, name: str) -> str:
 
 
 def _other_name(facts: Facts, name: str) -> str:
-    """Return how to give two programs a name each."""
+    """Return the remedy for two programs with the same name."""
     robot = robot_of(name)
     return 'give each robot a name of its own ({})'.format(start_robot(facts, robot + '_2')) \
         if robot else 'give one of them another name (__name:={}_2)'.format(name.lstrip('/'))
@@ -54,7 +55,7 @@ def find_on_nodes(facts: Facts, known: Collection[str] = ()) -> List[Finding]:
 
 
 def _by(nodes: Iterable[Node], key: Callable[[Node], _Key]) -> List[Tuple[_Key, List[Node]]]:
-    """Return {key(node): [node]} sorted by key."""
+    """Return [(key(node), [node])] sorted by key."""
     groups: Dict[_Key, List[Node]] = {}
     for node in nodes:
         groups.setdefault(key(node), []).append(node)
@@ -78,7 +79,7 @@ def _names(nodes: List[Node]) -> str:
 
 
 def _dead(facts: Facts) -> List[Finding]:
-    """Judge registered nodes that do not listen on a living computer: crashed or killed."""
+    """Report registered nodes that refuse connections: crashed or killed."""
     nodes = [node for node in _in_state(facts, REFUSED) if not true_address(facts, node)]
     return [Finding(
         FAULT, 'node_dead', _about(group, host), '{} registered at {}, but not running'.format(
@@ -88,7 +89,7 @@ def _dead(facts: Facts) -> List[Finding]:
 
 
 def _hosts(facts: Facts, known: Collection[str]) -> List[Finding]:
-    """Judge computers that do not answer, or whose name is unknown."""
+    """Report computers that do not respond, or whose name is unknown."""
     found = []
     silent = [node for node in _in_state(facts, SILENT)
               if node.name not in known and not true_address(facts, node)]
@@ -123,7 +124,7 @@ def _hosts(facts: Facts, known: Collection[str]) -> List[Finding]:
 
 
 def _seen_at(facts: Facts, node: Node) -> Set[str]:
-    """Return the addresses that a node connects from, as the publishers of its topics see them."""
+    """Return the addresses that a node connects from, as reported by its publishers."""
     return {link.address for other in facts.nodes.values() if facts.answering(other.name)
             for link in other.connections or ()
             if link.out and link.peer == node.name and link.address
@@ -131,7 +132,7 @@ def _seen_at(facts: Facts, node: Node) -> Set[str]:
 
 
 def _beside(facts: Facts, node: Node) -> Set[str]:
-    """Return the addresses of other answering nodes with the same robot or computer name."""
+    """Return the addresses of other responding nodes with the same robot or computer name."""
     def machine(host: str) -> str:
         """Return the name of a computer without its domain, '' for an address."""
         return '' if is_ipv4(host) else host.partition('.')[0]
@@ -145,22 +146,22 @@ def _beside(facts: Facts, node: Node) -> Set[str]:
 
 
 def true_address(facts: Facts, node: Node) -> str:
-    """Return the address that a silent node ought to advertise, '' if it is unknown.
+    """Return the address that a silent node should advertise, '' if unknown.
 
-    If it connects from another address than it advertises, that is the one. Else, if nothing
-    answers at the advertised address, it is the one at which the rest of its robot answers.
+    This is the address that it connects from, if different from the advertised one. Else, if
+    nothing responds at the advertised address, it is that of the other nodes of its robot.
     """
-    told = set(facts.computer.addresses_of(node.host)) | {node.host}
+    advertised = set(facts.computer.addresses_of(node.host)) | {node.host}
     seen = _seen_at(facts, node)
     if seen:
-        return '' if seen & told else sorted(seen)[0]
+        return '' if seen & advertised else sorted(seen)[0]
     lost = node.state in (SILENT, UNRESOLVED) or node.state == REFUSED and is_loopback(node.host)
     beside = _beside(facts, node) if lost else set()
-    return '' if beside & told else min(beside, default='')
+    return '' if beside & advertised else min(beside, default='')
 
 
 def _wrong_address(facts: Facts) -> List[Finding]:
-    """Judge nodes that seem alive, but advertise an address that is not theirs."""
+    """Report nodes that seem alive, but advertise a wrong address."""
     nodes = [node for node in _in_state(facts, SILENT, REFUSED)
              if true_address(facts, node)
              and not (is_loopback(node.host) and facts.several_computers())]
@@ -170,9 +171,9 @@ def _wrong_address(facts: Facts) -> List[Finding]:
         seen = any(_seen_at(facts, node) for node in group)
         own = facts.computer.is_own(address)
         found.append(Finding(
-            FAULT, 'node_address', _about(group, host), '{} {} others the address {}, where it '
+            FAULT, 'node_address', _about(group, host), '{} {} the address {}, where it '
             'does not answer; {} {}'.format(
-                _names(group), 'tells' if len(group) == 1 else 'tell', host,
+                _names(group), 'advertises' if len(group) == 1 else 'advertise', host,
                 'its connections come from' if seen else 'the rest of its robot answers at',
                 address), 'its topics are listed, but no data arrives',
             '{}: export ROS_IP={}, then start {} again   # not "rosnode cleanup": it would remove '
@@ -183,7 +184,7 @@ def _wrong_address(facts: Facts) -> List[Finding]:
 
 
 def _strangers(facts: Facts) -> List[Finding]:
-    """Judge nodes whose address another program answers at: the node died, its port was taken."""
+    """Report nodes that ended, and whose port is now used by another program."""
     found = [Finding(
         FAULT, 'node_stranger', node.name, 'what answers at {} is not a ROS node: {}'.format(
             node.uri, node.detail), _GHOST, CLEAN_UP) for node in _in_state(facts, STRANGER)]
@@ -197,7 +198,7 @@ def _strangers(facts: Facts) -> List[Finding]:
 
 
 def _taken(facts: Facts) -> Dict[str, str]:
-    """Return {dead node: the node that answers at its address}."""
+    """Return {dead node: the node that responds at its address}."""
     taken = {stream.node: stream.callerid for stream in facts.streams
              if stream.callerid and stream.callerid != stream.node}
     for _, nodes in _by(facts.nodes.values(), lambda node: node.uri):
@@ -208,18 +209,18 @@ def _taken(facts: Facts) -> Dict[str, str]:
 
 
 def _knows_nothing(graph: Graph, node: Node) -> bool:
-    """Tell whether whatever answers at a node's address knows none of that node's topics."""
+    """Return whether the program at a node's address has none of that node's topics."""
     published, subscribed = graph.topics_of(node.name)
     topics = set(published + subscribed) - set(COMMON)
     return node.state == ANSWERS and bool(topics) and topics <= set(stale_topics(graph, node))
 
 
 def _loopback(facts: Facts) -> List[Finding]:
-    """Judge nodes that advertise a loopback address though there are several computers."""
+    """Report nodes that advertise a loopback address in a system of several computers."""
     if not facts.several_computers():
         return []
-    # Those that answer run here; if another finding calls this computer's address wrong, it is the
-    # cause.
+    # Responding ones run here; if this computer's own address is loopback, another finding
+    # already reports that cause.
     here = is_loopback(facts.computer.own_host()[0])
     nodes = [node for _, node in sorted(facts.nodes.items())
              if is_loopback(node.host) and not (here and node.state == ANSWERS)]
@@ -234,12 +235,12 @@ def _loopback(facts: Facts) -> List[Finding]:
 
 
 def _second(facts: Facts) -> Tuple[Graph, Dict[str, Node]]:
-    """Return (graph, nodes) of the second look, or of the first if there was none."""
+    """Return (graph, nodes) of the second query; without one, the first graph."""
     return facts.later or facts.graph, facts.later_nodes
 
 
 def stale_topics(graph: Graph, node: Node) -> List[str]:
-    """Return the registered topics that the node itself does not know, sorted."""
+    """Return the topics that are registered for a node but missing from it, sorted."""
     published, subscribed = graph.topics_of(node.name)
     stale = set()
     if node.publications is not None:
@@ -250,7 +251,7 @@ def stale_topics(graph: Graph, node: Node) -> List[str]:
 
 
 def _stale(facts: Facts) -> List[Finding]:
-    """Judge registrations of living nodes that outlived their publisher or subscriber."""
+    """Report stale registrations of live nodes, without a publisher or subscriber."""
     graph, later = _second(facts)
     taken = _taken(facts)
     found = []
@@ -274,7 +275,7 @@ def _stale(facts: Facts) -> List[Finding]:
 
 
 def _fought(facts: Facts) -> List[Finding]:
-    """Judge nodes that registered elsewhere during the examination."""
+    """Report nodes whose registered URI changed during the examination."""
     return [Finding(
         WARNING, 'name_fought', name, 'it changed from {} to {} during the examination'.format(
             node.uri, node.uri_later),
@@ -286,7 +287,7 @@ def _fought(facts: Facts) -> List[Finding]:
 
 
 def _double_links(node: Node) -> Set[Tuple[str, str]]:
-    """Return the (topic, peer) pairs that a publisher is connected to more than once."""
+    """Return the (topic, peer) pairs to which a publisher is connected more than once."""
     seen: Set[Tuple[str, str]] = set()
     double: Set[Tuple[str, str]] = set()
     for link in node.connections or ():
@@ -297,12 +298,12 @@ def _double_links(node: Node) -> Set[Tuple[str, str]]:
 
 
 def _own(facts: Facts, name: str) -> bool:
-    """Tell whether a name is a doctor's."""
+    """Return whether a name belongs to a doctor."""
     return name == facts.caller_id or name.startswith('/mhri_doctor')
 
 
 def _doubles(facts: Facts) -> List[Finding]:
-    """Judge two subscribers of one name at one publisher: two programs share the name."""
+    """Report two subscribers of one name at one publisher: two programs share the name."""
     names: Dict[str, Set[str]] = {}
     for node in facts.nodes.values():
         again = facts.later_nodes.get(node.name)
@@ -317,12 +318,12 @@ def _doubles(facts: Facts) -> List[Finding]:
         'one of two robots obeys commands meant for the other, or its data jumps',
         '{}; rosnode info {}   # shows where the one is that the master knows: end the '
         'other'.format(_other_name(facts, peer), peer),
-        'two programs share the name, or one was switched off without saying goodbye')
+        'two programs share the name, or one was switched off without a shutdown')
         for peer, topics in sorted(names.items())]
 
 
 def _forgotten(facts: Facts) -> List[Finding]:
-    """Judge nodes that others are connected to, but that the master does not know (any more)."""
+    """Report nodes with connections that are not registered (any more)."""
     graph, later = _second(facts)
     if facts.later is None:
         return []
@@ -339,13 +340,13 @@ def _forgotten(facts: Facts) -> List[Finding]:
     return [Finding(
         WARNING, 'node_forgotten', peer, 'it is connected to {}, but the {} does not know '
         'it'.format(listed(sorted(names)), MASTER),
-        'it works with the nodes it knows already, but no new one finds it',
+        'it keeps its existing connections, but no new node finds it',
         'start {} again   # the master was restarted, or another node took its name'.format(peer))
         for peer, names in sorted(seen.items())]
 
 
 def odd_nodes(facts: Facts) -> Set[str]:
-    """Return the names of the nodes to look at again before reporting anything about them."""
+    """Return the names of the nodes to query again before reporting a fault."""
     known = set(facts.graph.nodes())
     odd = set()
     for name in facts.nodes:

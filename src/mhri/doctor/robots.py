@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The doctor on robots: type, topics, who drives them, and their clocks."""
+"""Checks of the robots: type, topics, sources of velocity, clocks."""
 from dataclasses import dataclass, field
 from difflib import get_close_matches
 from statistics import median
@@ -9,11 +9,12 @@ from typing import Any, Dict, Iterable, List, Mapping, Set, Tuple
 from mhri.base.config import ConfigError
 from mhri.base.names import topic_of
 from mhri.base.robot_types import resolve_robot_type, RobotType
-from mhri.doctor.facts import (
-    ANSWERS, Facts, FAULT, Finding, FINE, Graph, listed, LISTENED_S, WARNING)
+from mhri.base.text import listed
+from mhri.doctor.accessories import find_on_accessories
+from mhri.doctor.facts import ANSWERS, Facts, FAULT, Finding, FINE, Graph, LISTENED_S, WARNING
 from mhri.doctor.nodes import start_robot
 from mhri.doctor.sensors import find_on_cameras, find_on_lasers, find_same_frames
-from mhri.doctor.system import gates
+from mhri.doctor.system import muxes
 from mhri.robots.discovery import (
     Candidate, find_candidates, IgnoreList, NAME_PARAMETER, parameters_of, ROOT_PARAMETERS)
 from mhri.robots.stamp_age import delay_of
@@ -22,8 +23,8 @@ TWIST = 'geometry_msgs/Twist'
 _TYPES = (('imu', 'sensor_msgs/Imu'), ('rgb', 'sensor_msgs/Image'),
           ('depth', 'sensor_msgs/Image'), ('scan', 'sensor_msgs/LaserScan'),
           ('battery', 'sensor_msgs/BatteryState'))
-# Who may publish a robot's velocity: the gates, its own guard, a doctor that tries its watchdog.
-GATES, TRIAL, GUARD, LINK = '/mhri_gates', '/mhri_doctor', 'mhri_guard', 'mhri_link'
+# Nodes that may publish a robot's velocity: mux, its own guard, a doctor testing its watchdog.
+MUX, TRIAL, GUARD, LINK = '/mux', '/mhri_doctor', 'mhri_guard', 'mhri_link'
 OFFSET_WARN_S, OFFSET_FAULT_S = 0.1, 0.5
 
 
@@ -49,7 +50,7 @@ class Robot:
         return '/{}/{}'.format(self.candidate.name, path)
 
     def list_topics(self) -> str:
-        """Return the command that lists its topics, perhaps among those of others."""
+        """Return the command that lists its topics, possibly among those of others."""
         return 'rostopic list' if self.candidate.seen.at_root else \
             'rostopic list | grep /{}/'.format(self.candidate.name)
 
@@ -75,7 +76,7 @@ def find_on_robots(facts: Facts, types: Mapping[str, RobotType],
     found = _absent(facts, [robot.candidate for robot in robots])
     for robot in robots:
         candidate = robot.candidate
-        if facts.wanted and candidate.name not in facts.wanted:
+        if facts.requested and candidate.name not in facts.requested:
             continue
         if candidate.problem:
             found.append(Finding(
@@ -95,7 +96,7 @@ def find_on_robots(facts: Facts, types: Mapping[str, RobotType],
 
 
 def _left_over(facts: Facts, candidate: Candidate) -> List[str]:
-    """Return the parameters of a robot; one with others below it stands for them all."""
+    """Return the parameters of a robot; a namespace stands for all parameters below it."""
     own = [candidate.name] if isinstance(facts.graph.parameters.get(candidate.name), dict) else []
     if not candidate.seen.at_root:
         return own
@@ -104,19 +105,19 @@ def _left_over(facts: Facts, candidate: Candidate) -> List[str]:
 
 
 def _absent(facts: Facts, candidates: Iterable[Candidate]) -> List[Finding]:
-    """Judge robots that somebody asked for, or the panel lists, but are not on the graph."""
+    """Report robots that were requested or are listed in the panel, but not on the graph."""
     there = {candidate.name for candidate in candidates}
     mhri = facts.graph.parameters.get('mhri')
     listing = mhri.get('robots') if isinstance(mhri, dict) else None
     in_list = {str(name) for name in listing} if isinstance(listing, list) else set()
     found = []
-    for name in sorted((set(facts.wanted) or in_list) - there):
+    for name in sorted((set(facts.requested) or in_list) - there):
         near = get_close_matches(name, there, 1)
         found.append(Finding(
             FAULT, 'robot_absent', name, 'nothing of it is on the graph{}; there {}'.format(
                 ' (is "{}" meant?)'.format(near[0]) if near else '',
                 'are ' + listed(sorted(there), 12) if there else 'are no robots at all'),
-            'its row in the panel says that nothing has been heard yet',
+            'its row in the panel says that it has not been heard yet',
             start_robot(facts, name)))
     return found
 
@@ -129,7 +130,8 @@ def _robot(facts: Facts, types: Mapping[str, RobotType], robot: Robot) -> List[F
         return found
     found += (_velocity(facts, robot) + _topics(facts, robot) + _odometry(facts, robot)
               + _clock(facts, robot) + find_on_lasers(facts, name, robot.topics('scan'))
-              + find_on_cameras(facts, name, robot.topics('rgb', 'depth')))
+              + find_on_cameras(facts, name, robot.topics('rgb', 'depth'))
+              + find_on_accessories(facts, name, robot.template.accessories))
     if all(item.severity == FINE for item in found):
         found.append(Finding(FINE, 'robot', name, '{}, {} nodes, can be driven'.format(
             robot.template.label, len(nodes))))
@@ -137,7 +139,7 @@ def _robot(facts: Facts, types: Mapping[str, RobotType], robot: Robot) -> List[F
 
 
 def _type(robot: Robot, types: Mapping[str, RobotType]) -> List[Finding]:
-    """Judge ``robot_type`` and the other parameters."""
+    """Check ``robot_type`` and the other parameters."""
     name, found = robot.candidate.name, []
     key = robot.parameter('robot_type')
     if 'robot_type' not in robot.parameters:
@@ -159,22 +161,22 @@ def _type(robot: Robot, types: Mapping[str, RobotType]) -> List[Finding]:
 
 
 def _velocity(facts: Facts, robot: Robot) -> List[Finding]:
-    """Judge who listens to the robot's velocity topics and who publishes them."""
+    """Check the subscribers and publishers of the robot's velocity topics."""
     name, topics = robot.candidate.name, robot.topics('command')
     guard = '/' + GUARD if robot.candidate.seen.at_root else topic_of(name, GUARD)
-    # Gates and guard read what others say there, and obey none of it.
-    drivers = [GATES, guard] + gates(facts)
-    # Where the base listens to its guard alone, the guard reads these and writes another.
+    # Mux and guard subscribe there only to detect other publishers.
+    drivers = [MUX, guard] + muxes(facts)
+    # If the base only subscribes to its guard, the guard republishes to another topic.
     topics += [topic for topic in facts.graph.topics_of(guard)[0]
                if topic.startswith(guard + '/') and facts.graph.types.get(topic) == TWIST]
     alive = {topic: [node for node in facts.graph.subscribers.get(topic, ())
                      if facts.nodes[node].state == ANSWERS and node not in drivers]
              for topic in topics}
     chosen = next((topic for topic in topics if alive[topic]), None)
-    # A robot on a master of its own is driven through its guard, over the link.
+    # A robot with its own master is driven through its guard, over the link.
     if chosen is None and not _by_link(facts, name):
         return [Finding(
-            FAULT, 'velocity_unheard', name, 'nobody listens to {}'.format(' or '.join(topics)),
+            FAULT, 'velocity_unheard', name, 'nothing subscribes to {}'.format(' or '.join(topics)),
             'the robot is selected, but does not move',
             '{}   # its real topic, then: rosparam set /{}/mhri/command "[<topic>]"; or start its '
             'base: {}'.format(robot.list_topics(), name, start_robot(facts, name)))]
@@ -187,19 +189,21 @@ def _velocity(facts: Facts, robot: Robot) -> List[Finding]:
             node for node in others if _runs_on(facts, robot, node, hosts)]
         found += _beside(facts, name, topic, own)
         foreign = [node for node in others if node not in own]
-        heard = facts.graph.subscribers.get(topic, ())
-        if foreign and (alive[topic] if topic in alive else heard):
+        listeners = facts.graph.subscribers.get(topic, ())
+        if foreign and (alive[topic] if topic in alive else listeners):
             found.append(_foreign(name, topic, foreign))
-        elif foreign and guard in heard and chosen:
-            # The base listens to the guard alone.
+        elif foreign and guard in listeners and chosen:
+            # The base only subscribes to the guard.
             found.append(_passed_on(name, topic, foreign))
     return found + (_hidden(facts, name, chosen, alive[chosen]) if chosen else [])
 
 
 def _runs_on(facts: Facts, robot: Robot, node: str, hosts: Set[str]) -> bool:
-    """Tell whether a node is a robot's own: below its name, or of no robot, and on its computer.
+    """Return whether a node is a robot's own.
 
-    :param hosts: where those run that listen to its velocity
+    It runs on the robot's computer, and its name is below the robot's or in no namespace.
+
+    :param hosts: hosts of the subscribers of its velocity
     """
     host = facts.nodes[node].host
     if hosts and host not in hosts:
@@ -207,18 +211,18 @@ def _runs_on(facts: Facts, robot: Robot, node: str, hosts: Set[str]) -> bool:
     if node.startswith('/{}/'.format(robot.candidate.name)):
         return True
     of_none = robot.candidate.seen.at_root or node.count('/') == 1
-    # On one computer with everything else only what passes commands on is known to be the robot's.
+    # On a shared computer only nodes that relay commands are known to be the robot's.
     return of_none and (not facts.computer.is_own(host) or robot.candidate.seen.at_root
                         and _passes_on(facts, node))
 
 
 def _passes_on(facts: Facts, node: str) -> bool:
-    """Tell whether a node hears velocities, as a smoother or a twist_mux does."""
+    """Return whether a node subscribes to velocities, like a smoother or a twist_mux."""
     return any(facts.graph.types.get(topic) == TWIST for topic in facts.graph.topics_of(node)[1])
 
 
 def _beside(facts: Facts, name: str, topic: str, own: List[str]) -> List[Finding]:
-    """Say which programs of its own drive a robot beside mhri."""
+    """List the robot's own programs that drive it besides mhri."""
     nodes = [node for node in own if not _passes_on(facts, node)]
     return [Finding(FINE, 'velocity_own', name, '{} of its own {} {}, too'.format(
         listed(nodes), 'publishes' if len(nodes) == 1 else 'publish', topic))] * bool(nodes)
@@ -230,24 +234,24 @@ def _by_link(facts: Facts, name: str) -> bool:
 
 
 def _foreign(name: str, topic: str, nodes: List[str]) -> Finding:
-    """Say who drives a robot past the gates, or tries."""
-    words = '{} {} {}, past the gates'.format(
+    """Report nodes that drive a robot bypassing the mux, or try to."""
+    words = '{} {} {}, past the mux'.format(
         listed(nodes), 'publishes' if len(nodes) == 1 else 'publish', topic)
     if topic.endswith(GUARD + '/command'):
         return Finding(
             WARNING, 'velocity_foreign', name, words + '; its guard drops it',
-            'nothing, as long as the guard runs; somebody tries to drive this robot',
-            'rosnode kill {}   # nobody knows it? see "Security" in the guide'.format(
+            'nothing while the guard runs; another program tries to drive this robot',
+            'rosnode kill {}   # unknown program? see "Security" in the guide'.format(
                 ' '.join(nodes)))
     return Finding(
         WARNING, 'velocity_foreign', name, words,
-        'the robot twitches, or goes on although the gates send zero: stop all does not reach that '
+        'the robot twitches, or goes on although the mux sends zero: stop all does not reach that '
         'program', 'rosnode kill {}   # or let it publish into a cmd_vel_mux'.format(
             ' '.join(nodes)))
 
 
 def _passed_on(name: str, topic: str, nodes: List[str]) -> Finding:
-    """Say who drives a robot through its guard, beside mhri."""
+    """Report nodes that drive a robot through its guard, besides mhri."""
     return Finding(
         WARNING, 'velocity_foreign', name, '{} {} {} from another computer, and its guard passes '
         'that on'.format(listed(nodes), 'publishes' if len(nodes) == 1 else 'publish', topic),
@@ -260,7 +264,7 @@ def _uri(text: str) -> str:
 
 
 def _hidden(facts: Facts, name: str, topic: str, listeners: Iterable[str]) -> List[Finding]:
-    """Judge programs that send velocity but are unknown to the master."""
+    """Report programs that publish velocity but are unknown to the master."""
     known = {_uri(facts.nodes[node].uri) for node in facts.graph.publishers.get(topic, ())}
     if facts.later is not None:
         known |= {_uri(facts.nodes[node].uri_later or facts.nodes[node].uri)
@@ -277,13 +281,13 @@ def _hidden(facts: Facts, name: str, topic: str, listeners: Iterable[str]) -> Li
     return [Finding(
         FAULT, 'velocity_hidden', name, 'a program at {} is connected to {}, and the master does '
         'not know it'.format(peer, topic),
-        'somebody else may drive the robot; stop all does not reach it',
+        'another program may drive the robot; stop all does not reach it',
         'end that program   # on its computer: ss -tlnp | grep {}'.format(peer.rpartition(':')[2]))
         for peer in sorted(peers)]
 
 
 def hidden_listeners(facts: Facts, topics: Iterable[str]) -> Set[str]:
-    """Return the nodes to look at twice: they receive velocity from somebody unknown."""
+    """Return the nodes that receive velocity from an unknown publisher, to query again."""
     odd = set()
     for topic in topics:
         known = {_uri(facts.nodes[node].uri) for node in facts.graph.publishers.get(topic, ())}
@@ -295,12 +299,12 @@ def hidden_listeners(facts: Facts, topics: Iterable[str]) -> Set[str]:
 
 
 def _topics(facts: Facts, robot: Robot) -> List[Finding]:
-    """Judge the types of the robot's topics against those of its template."""
+    """Compare the types of the robot's topics with those of its template."""
     name, template, found = robot.candidate.name, robot.template, []
     kinds = (('command', TWIST), ('odometry', template.odometry_type)) + _TYPES
     for key, full, kind in [(key, topic, kind) for key, kind in kinds
                             for topic in robot.topics(key)]:
-        # The master remembers the types of topics that nobody uses any more.
+        # The master keeps the types of topics that are no longer used.
         used = facts.graph.publishers.get(full) or facts.graph.subscribers.get(full)
         real = facts.graph.types.get(full, '*') if used else '*'
         if real not in ('*', '', kind):
@@ -314,13 +318,13 @@ def _topics(facts: Facts, robot: Robot) -> List[Finding]:
 
 
 def _odometry(facts: Facts, robot: Robot) -> List[Finding]:
-    """Judge whether the robot says how it moves."""
+    """Check that odometry is published, by one node per topic."""
     name, topics = robot.candidate.name, robot.topics('odometry')
     publishers = {topic: facts.graph.publishers.get(topic, ()) for topic in topics}
     mute = 'the panel shows no speed, says "silent", and no stop is confirmed'
     if topics and not any(publishers.values()):
         return [Finding(
-            WARNING, 'odometry_missing', name, 'nobody publishes {}'.format(' or '.join(topics)),
+            WARNING, 'odometry_missing', name, 'nothing publishes {}'.format(' or '.join(topics)),
             mute, '{}   # its real topic, then: rosparam set /{}/mhri/odometry "[<topic>]"; on '
             'the robot: is its base switched on?'.format(robot.list_topics(), name))]
     found = []
@@ -344,20 +348,20 @@ def _odometry(facts: Facts, robot: Robot) -> List[Finding]:
 def clock_offset(samples: Iterable[Tuple[float, float]]) -> Tuple[float, float]:
     """Return (offset [s], uncertainty [s]) of a sender's clock, positive if it is ahead.
 
-    A stamp is older than its arrival by the time of travel, which is never negative: the fastest
-    message is nearest to the truth, and the scatter of the others says how slow the network is.
+    A message arrives after its stamp by its travel time, which is never negative: the fastest
+    message gives the best estimate, and the scatter of the others is a measure of the delay.
 
     :param samples: pairs (received, stamp) [s], at least one
     """
     delays = sorted(received - stamp for received, stamp in samples)
     scatter = median(delays) - delays[0]
-    # One sample proves little: take a tenth of a second, which a message rarely exceeds on networks
-    # that people drive robots over.
+    # Few samples prove little: assume 0.1 s, a delay that messages rarely exceed on networks
+    # used for driving robots.
     return -delays[0], max(0.005, scatter, 0.1 if len(delays) < 5 else 0.0)
 
 
 def _clock(facts: Facts, robot: Robot) -> List[Finding]:
-    """Judge the offset of the robot's clock by the stamps of its odometry and IMU."""
+    """Check the offset of the robot's clock by the stamps of its odometry and IMU."""
     name, topics = robot.candidate.name, robot.topics('odometry', 'imu')
     samples = [sample for stream in facts.streams if stream.topic in topics
                for sample in stream.samples]
@@ -374,12 +378,12 @@ def _clock(facts: Facts, robot: Robot) -> List[Finding]:
     offset_s, error_s = clock_offset(samples)
     words = 'its clock is {:.3f} s {} the clock here'.format(
         abs(offset_s), 'ahead of' if offset_s > 0 else 'behind')
-    sure = 'within {:.0f} ms, from the stamps of {} messages; a delay before the stamp counts as ' \
-        'offset'.format(error_s * 1e3, len(samples))
+    confidence = 'within {:.0f} ms, from the stamps of {} messages; a delay before the stamp ' \
+        'counts as offset'.format(error_s * 1e3, len(samples))
     if abs(offset_s) - error_s <= OFFSET_WARN_S:
-        return [Finding(FINE, 'clock', name, words, sure=sure)]
+        return [Finding(FINE, 'clock', name, words, confidence=confidence)]
     return [Finding(
         FAULT if abs(offset_s) - error_s > OFFSET_FAULT_S else WARNING, 'clock_offset', name, words,
         'pictures and transforms are refused as too old or from the future; recordings do not '
         'fit together', 'on {0}: sudo apt install chrony; sudo chronyc makestep   # or once: sudo '
-        'date -s @$(ssh <this computer> date +%s.%N)'.format(name), sure)]
+        'date -s @$(ssh <this computer> date +%s.%N)'.format(name), confidence)]

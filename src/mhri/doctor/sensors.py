@@ -1,16 +1,17 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The doctor on sensors: cameras that cost too much, lasers that see nothing, frames."""
+"""Checks of the sensors: bandwidth of cameras, blind lasers, duplicate frames."""
 from typing import Dict, Iterable, List, Set, Tuple
 
-from mhri.doctor.facts import Facts, Finding, HOST, listed, LISTENED_S, Stream, WARNING
+from mhri.base.text import listed
+from mhri.doctor.facts import Facts, Finding, HOST, LISTENED_S, Stream, WARNING
 from mhri.link.carried import SHARED_FRAMES
 
 IMAGE = 'sensor_msgs/Image'
 
 
 def find_on_cameras(facts: Facts, name: str, topics: Iterable[str]) -> List[Finding]:
-    """Judge whether the pictures of a robot come over the network as they are.
+    """Report pictures of a robot that are sent uncompressed over the network.
 
     :param topics: absolute names of its pictures, colour and depth
     """
@@ -30,7 +31,7 @@ def find_on_cameras(facts: Facts, name: str, topics: Iterable[str]) -> List[Find
 
 
 def find_on_lasers(facts: Facts, name: str, topics: Iterable[str]) -> List[Finding]:
-    """Judge whether the lasers of a robot speak, and measure anything.
+    """Check that the lasers of a robot publish, and measure anything.
 
     :param topics: absolute names of its scans
     """
@@ -38,40 +39,40 @@ def find_on_lasers(facts: Facts, name: str, topics: Iterable[str]) -> List[Findi
     for stream in facts.streams:
         if stream.topic not in topics:
             continue
-        shows = 'the obstacle brake does not see with it, and the view of the scan is empty'
+        symptom = 'the obstacle brake does not see with it, and the view of the scan is empty'
         if stream.listened_s > LISTENED_S and not stream.messages:
             found.append(Finding(
                 WARNING, 'scan_silent', name, '{} is published by {}, but nothing came in {:.1f} '
-                's'.format(stream.topic, stream.node, stream.listened_s), shows,
+                's'.format(stream.topic, stream.node, stream.listened_s), symptom,
                 'rostopic hz {}   # does it turn? cable? then restart its driver'.format(
                     stream.topic)))
         elif stream.beams and not any(stream.beams[1:3]):
-            found.append(_blind(name, stream, shows))
+            found.append(_blind(name, stream, symptom))
     return found
 
 
-def _blind(name: str, stream: Stream, shows: str) -> Finding:
-    """Say that a laser measures nothing, by what its type says of its beams."""
+def _blind(name: str, stream: Stream, symptom: str) -> Finding:
+    """Report that a laser measures nothing."""
     count, unsure = stream.beams[0], stream.beams[3]
     return Finding(
         WARNING, 'scan_blind', name, 'none of the {} beams of {} measures anything{}'.format(
-            count, stream.topic, '' if unsure else ', nor says that nothing is there'), shows,
+            count, stream.topic, '' if unsure else ', nor says that nothing is there'), symptom,
         'rostopic echo -n1 {}/ranges   # stand before it: if nothing changes, restart its '
         'driver'.format(stream.topic),
         'unless nothing is within its reach: its driver says so by this value' if unsure else '')
 
 
 def find_unheard(facts: Facts) -> List[Finding]:
-    """Say which topics nobody has listened to: nothing that is wrong with them is told."""
+    """Report the topics for which there was no time, so that their faults are unknown."""
     return [Finding(
         WARNING, 'time_short', HOST, 'there was no time to listen to {}'.format(
-            listed(facts.unheard)), 'what is wrong there is not told',
+            listed(facts.unheard)), 'faults there are not reported',
         'rosrun mhri mhri_doctor   # again, once this computer has less to do'
     )] * bool(facts.unheard)
 
 
 def find_same_frames(facts: Facts, odometry: Dict[str, List[str]]) -> List[Finding]:
-    """Judge whether two robots call their frames the same.
+    """Report robots with the same frame names.
 
     :param odometry: {robot: the absolute names of its odometry}
     """
@@ -86,10 +87,10 @@ def find_same_frames(facts: Facts, odometry: Dict[str, List[str]]) -> List[Findi
         if len(names) > 1:
             groups.setdefault(tuple(sorted(names)), []).append(frame)
     return [Finding(
-        WARNING, 'frames_same', min(set(names) & set(facts.wanted or names)),
+        WARNING, 'frames_same', min(set(names) & set(facts.requested or names)),
         '{} all have {} {}'.format(
             listed(names), 'the frame' if len(frames) == 1 else 'the frames', listed(frames)),
         'on the map and in tf each is where the other one is, by turns',
         'in the launch file of each: <param name="tf_prefix" value="<its name>"/>, and the frames '
         'of its driver, such as odom_frame: <its name>/odom') for names, frames in groups.items()
-        if not facts.wanted or set(names) & set(facts.wanted)]
+        if not facts.requested or set(names) & set(facts.requested)]

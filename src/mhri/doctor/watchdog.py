@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Does a robot stop by itself when commands cease? The trial, step by step, and its verdict."""
+"""Tests whether a robot stops by itself when commands cease: the trial, and its verdict."""
 from typing import List, Optional
 
 from mhri.doctor.facts import FAULT, Finding, FINE, WARNING
@@ -12,7 +12,7 @@ STOPS, RUNS_ON, NOT_MOVED, MOVED_BEFORE, MUTE, LOST = (
     'stops', 'runs on', 'not moved', 'moved before', 'mute', 'lost')
 
 TURN_RAD_S = 0.3
-PATIENCE_S = 3.0
+TIMEOUT_S = 3.0
 START_S = 2.0
 TURNING_S = 0.7
 REST_READINGS = 3
@@ -23,11 +23,11 @@ _GUARD = 'on the robot: utils/remote/mhri_guard in its namespace (turtle_remote.
 
 
 class WatchdogTrial:
-    """Turns a robot in place slowly, falls silent, and waits for it to stop by itself.
+    """Turns a robot in place slowly, stops publishing, and waits for it to stop by itself.
 
-    Turning keeps the robot in its place, should it stand on the floor after all. ``phase`` is one
-    of WAITING (for odometry at rest), DRIVING, LISTENING (the doctor sends nothing) and DONE;
-    ``outcome`` is set when DONE, ``stopped_s`` the time from the last command to standstill [s].
+    It turns, so that a robot on the floor stays in place. ``phase`` is one of WAITING (for
+    odometry at rest), DRIVING, LISTENING (nothing is published) and DONE; ``outcome`` is set when
+    DONE, ``stopped_s`` is the time from the last command to standstill [s].
     """
 
     def __init__(self, now: float, turn_rad_s: float = TURN_RAD_S) -> None:
@@ -41,10 +41,10 @@ class WatchdogTrial:
         self._rest: List[float] = []
 
     def step(self, now: float, motion: Optional[Motion], heard_at: float) -> Optional[float]:
-        """Take the newest motion; return the turn to send now [rad/s], None for silence.
+        """Process the newest motion; return the turn rate to publish [rad/s], None for nothing.
 
-        :param motion: :class:`mhri.robots.link.Motion`, None if none came yet
-        :param heard_at: when the motion came [s]
+        :param motion: :class:`mhri.robots.link.Motion`, None before the first
+        :param heard_at: time of receipt of the motion [s]
         """
         if not now - heard_at <= FRESH_S:
             motion = None
@@ -93,7 +93,7 @@ class WatchdogTrial:
         if self.phase == LISTENING and len(self._rest) >= REST_READINGS:
             self.stopped_s = max(0.0, self._rest[0] - self._last_sent)
             self._end(STOPS)
-        elif self.phase == LISTENING and now - self._begun > PATIENCE_S:
+        elif self.phase == LISTENING and now - self._begun > TIMEOUT_S:
             self._end(RUNS_ON)
 
 
@@ -101,15 +101,15 @@ def verdict(robot: str, outcome: str, stopped_s: Optional[float] = None) -> Find
     """Return the :class:`Finding` of a trial."""
     if outcome == STOPS and stopped_s is not None:
         words = 'stood still {:.2f} s after the last command'.format(stopped_s)
-        sure = 'measured once, by its own odometry'
+        confidence = 'measured once, by its own odometry'
         if stopped_s <= SLOW_S:
-            return Finding(FINE, 'watchdog', robot, words, sure=sure)
+            return Finding(FINE, 'watchdog', robot, words, confidence=confidence)
         return Finding(WARNING, 'watchdog_slow', robot, words, 'when the network is lost, it '
-                       'drives on for that long', _GUARD, sure)
+                       'drives on for that long', _GUARD, confidence)
     if outcome == RUNS_ON:
         return Finding(
             FAULT, 'watchdog_none', robot, 'it kept turning for {:.0f} s without any command, '
-            'until it was sent zero'.format(PATIENCE_S),
+            'until it was sent zero'.format(TIMEOUT_S),
             'when the network is lost or the panel\'s computer dies, it drives on for ever', _GUARD,
             'measured once, by its own odometry')
     words = {
@@ -117,11 +117,11 @@ def verdict(robot: str, outcome: str, stopped_s: Optional[float] = None) -> Find
         MOVED_BEFORE: 'it was already moving before the trial, so nothing was tried',
         MUTE: 'it sends no odometry, so nothing was tried',
         LOST: 'its odometry stopped during the trial, so nothing could be measured'}[outcome]
-    return unknown(robot, words, 'rosrun mhri mhri_doctor {}   # mend what it says first'.format(
+    return unknown(robot, words, 'rosrun mhri mhri_doctor {}   # fix what it reports first'.format(
         robot))
 
 
 def unknown(robot: str, words: str, remedy: str) -> Finding:
-    """Return the :class:`Finding` that nobody knows about a robot's watchdog."""
+    """Return the :class:`Finding` for a watchdog that could not be measured."""
     return Finding(WARNING, 'watchdog_unknown', robot, words,
-                   'nobody knows whether it stops when the network is lost', remedy)
+                   'it may not stop when the network is lost', remedy)

@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A scripted operator: drives one robot after the other along its way, by what a screen shows.
+"""A scripted operator: drives one robot after another along its route, with the data of a screen.
 
-It knows no more than a person at the screen: where each robot was when its newest message left it,
-what its laser sees ahead, and whether it is heard. It steers at the next place of the way, stops
-for what stands before it, and turns to the next robot when this one has arrived, or is not heard.
+It has no more information than a person at the screen: the pose in each robot's newest message, the
+clearance ahead by its laser, and its silence. It steers to the next place of the route, stops for
+obstacles, and goes on with the next robot when this one has arrived or is silent.
 """
 from dataclasses import dataclass
 import math
@@ -12,34 +12,34 @@ from typing import Dict, Mapping, Optional, Sequence, Tuple
 
 from mhri.drill.scenario import Point
 
-# A place is reached within so much [m].
+# A place is reached within this distance [m].
 REACHED_M = 0.25
-# How much it turns for each radian that the robot is off [1/s], and the most it pushes the stick to
-# a side. With more, a link of 0.4 s each way has it swing (for ever at pi / 2 over the delay of the
-# loop): a computer that is 30 ms late would then take a tenth longer for a drill.
-STEER, MOST_TURN = 1.0, 0.4
-# It does not drive, only turns, if the robot is further off [rad]; it slows down before a place,
-# within so much [m].
+# Turn rate per heading error [1/s], and maximum sideways deflection of the stick. Higher values
+# oscillate with a link delay of 0.4 s each way (sustained at pi / 2 over the delay of the loop):
+# a computer that is 30 ms late would then need a tenth longer for a drill.
+STEER, MAX_TURN = 1.0, 0.4
+# Above this heading error [rad], the robot only turns; it slows down within this distance of a
+# place [m].
 ASIDE_RAD, SLOW_M = 0.7, 0.6
-LEAST_FORWARD = 0.25
-# It stops if this is nearer to the robot's front [m], and waits until it has gone.
+MIN_FORWARD = 0.25
+# It stops for obstacles closer to the robot's front than this [m], and waits.
 AHEAD_M = 0.45
-# It looks this far to both sides for what is ahead [rad].
+# Half-angle of the sector ahead to check for obstacles [rad].
 AHEAD_RAD = 0.35
-# What is so near to its front is not looked for [m].
+# Distance from the front that the laser need not measure [m].
 _FRONT_M = 0.05
-# Nothing heard for so long: it lets go [s].
+# A robot that is silent for this long is released [s].
 NOT_HEARD_S = 1.0
-# It looks and acts so often [Hz].
+# Rate of decisions [Hz].
 RATE_HZ = 20.0
 
 
 def ahead_of(ranges: Sequence[float], increment_rad: float, front_m: float,
              range_min_m: float) -> float:
-    """Return the free way straight ahead [m] of a scan that begins there, from the front on.
+    """Return the clearance ahead of the robot's front [m], of a scan that begins straight ahead.
 
-    What is nearer than the laser measures counts as being there. 0 and NaN may mean that, or that
-    nothing is there: the latter, where the laser measures all that is before the robot's front.
+    Readings below the laser's minimum range count as obstacles. 0 and NaN may mean that, or nothing
+    in range; they count as the latter if the laser measures everything in front of the robot.
     """
     side = int(AHEAD_RAD / increment_rad)
     unsure_m = range_min_m if range_min_m > front_m + _FRONT_M else math.inf
@@ -50,10 +50,10 @@ def ahead_of(ranges: Sequence[float], increment_rad: float, front_m: float,
 
 @dataclass(frozen=True)
 class Seen:
-    """A robot as the operator sees it: place and heading in the plan [m, m, rad].
+    """A robot as known to the operator: position and heading in the plan [m, m, rad].
 
-    ``ahead_m`` is what its laser measures from its front on, infinity for nothing, ``age_s`` how
-    long nothing has come from it.
+    ``ahead_m`` is the clearance from its front by its laser, infinity if free; ``age_s`` is the
+    age of its newest message.
     """
 
     x_m: float
@@ -65,7 +65,7 @@ class Seen:
 
 @dataclass(frozen=True)
 class Act:
-    """What the operator does: ``robot`` is checked ('' for none), the stick in [-1, 1]."""
+    """An action of the operator: the selected ``robot`` ('' for none), the stick in [-1, 1]."""
 
     robot: str = ''
     forward: float = 0.0
@@ -75,8 +75,8 @@ class Act:
 class ScriptedOperator:
     """Decides what to do next.
 
-    :param routes: {robot: the places it is to pass}, in the order in which they are driven
-    :param turn_rad_s: turn rate of a stick pushed all the way to the side
+    :param routes: {robot: places to pass}, in the order of driving
+    :param turn_rad_s: turn rate at full sideways deflection of the stick [rad/s]
     """
 
     def __init__(self, routes: Mapping[str, Sequence[Point]], turn_rad_s: float) -> None:
@@ -87,26 +87,26 @@ class ScriptedOperator:
 
     @property
     def done(self) -> bool:
-        """Whether every robot has been all the way."""
+        """Whether every robot has completed its route."""
         return not self._left
 
     def act(self, seen: Mapping[str, Seen]) -> Act:
-        """Return what to do now; call it :data:`RATE_HZ` times a second.
+        """Return the next action; call it :data:`RATE_HZ` times a second.
 
-        :param seen: the robots of which anything was ever heard
+        :param seen: the robots with at least one message so far
         """
         robot = self._choose(seen)
         if robot is None:
             return Act()
         if robot != self._robot:
-            # The stick is centred for the new one first.
+            # Centre the stick first for the new robot.
             self._robot = robot
             return Act(robot)
         forward, turn = self._steer(robot, seen[robot])
         return Act(robot, forward, turn)
 
     def _choose(self, seen: Mapping[str, Seen]) -> Optional[str]:
-        """Return the robot to drive: this one while it is heard, else the next that is."""
+        """Return the robot to drive: the current one unless silent, else the next live one."""
         heard = [name for name in self._left if name in seen and seen[name].age_s < NOT_HEARD_S]
         if self._robot in heard:
             self._pass(self._robot, seen[self._robot])
@@ -115,7 +115,7 @@ class ScriptedOperator:
         return next((name for name in heard if name in self._left), None)
 
     def _pass(self, robot: str, seen: Seen) -> None:
-        """Leave behind the place that the robot has reached."""
+        """Remove the next place of the route once it is reached."""
         x, y = self._left[robot][0]
         if math.hypot(x - seen.x_m, y - seen.y_m) < REACHED_M:
             self._left[robot] = self._left[robot][1:]
@@ -125,9 +125,9 @@ class ScriptedOperator:
     def _steer(self, robot: str, seen: Seen) -> Tuple[float, float]:
         x, y = self._left[robot][0]
         off = math.remainder(math.atan2(y - seen.y_m, x - seen.x_m) - seen.yaw_rad, 2.0 * math.pi)
-        turn = max(-MOST_TURN, min(MOST_TURN, STEER * off / self._turn_rad_s))
+        turn = max(-MAX_TURN, min(MAX_TURN, STEER * off / self._turn_rad_s))
         way = math.hypot(x - seen.x_m, y - seen.y_m)
         if seen.ahead_m < min(AHEAD_M, way) and abs(off) < ASIDE_RAD:
             return 0.0, turn
-        forward = max(0.0, 1.0 - abs(off) / ASIDE_RAD) * min(1.0, LEAST_FORWARD + way / SLOW_M)
+        forward = max(0.0, 1.0 - abs(off) / ASIDE_RAD) * min(1.0, MIN_FORWARD + way / SLOW_M)
         return forward, turn

@@ -1,15 +1,15 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The page of a drill: one HTML file that stands alone, with the table and a map of the ways."""
+"""The page of a drill: one self-contained HTML file with tables and a map of the paths."""
 from html import escape
 from typing import Any, List, Mapping, Sequence
 
+from mhri.base.robot_colours import colour_of
 from mhri.drill.results import heads_of
 from mhri.drill.scenario import Target
 from mhri.session.drill_results import rows_of
+from mhri.session.report_page import table
 
-# Okabe and Ito's palette, the dark ones.
-_COLOURS = ('#0072b2', '#d55e00', '#009e73', '#cc79a7')
 _MARGIN_M, _WIDTH_PX = 0.3, 720
 _STYLE = ('body{font:16px/1.5 sans-serif;max-width:46em;margin:2em auto;padding:0 1em;color:#222}'
           'table{border-collapse:collapse;margin:1em 0}td,th{padding:.2em 1em .2em 0;'
@@ -21,19 +21,9 @@ NOTE = ('Terms after Olsen and Goodrich (2003), Olsen and Wood (2004) and Cranda
         'Nothing here is certified.')
 
 
-def _cells(kind: str, texts: Sequence[str]) -> str:
-    return '<tr>{}</tr>'.format(''.join('<{0}>{1}</{0}>'.format(kind, escape(text))
-                                        for text in texts))
-
-
-def _table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    return '<table>{}{}</table>'.format(
-        _cells('th', head), ''.join(_cells('td', row) for row in rows)) if rows else ''
-
-
 def _picture(result: Mapping[str, Any], walls: Sequence[Sequence[float]],
              targets: Sequence[Target]) -> str:
-    """Return the building from above with every robot's way, as SVG."""
+    """Return a plan of the building with every robot's path, as SVG."""
     xs = [wall[place] for wall in walls for place in (0, 2)]
     ys = [wall[place] for wall in walls for place in (1, 3)]
     left, top = min(xs) - _MARGIN_M, max(ys) + _MARGIN_M
@@ -44,13 +34,13 @@ def _picture(result: Mapping[str, Any], walls: Sequence[Sequence[float]],
         return '{:.2f},{:.2f}'.format(x - left, top - y)
     parts = ['<polyline points="{} {}" stroke="#444" stroke-width=".05"/>'.format(
         at(*wall[:2]), at(*wall[2:])) for wall in walls]
-    for number, (name, robot) in enumerate(result['robots'].items()):
+    for number, (name, robot) in enumerate(result['robots'].items(), 1):
         parts.append('<polyline points="{}" fill="none" stroke="{}" stroke-width=".04"/>'.format(
-            ' '.join(at(x, y) for x, y in robot['trail']), _COLOURS[number % len(_COLOURS)]))
+            ' '.join(at(x, y) for x, y in robot['trail']), colour_of(number, dark=False)))
         for x, y in robot['trail'][:1]:
             parts.append('<text x="{:.2f}" y="{:.2f}" font-size=".25" font-family="sans-serif" '
                          'text-anchor="middle" fill="{}">{}</text>'.format(
-                             x - left, top - y - 0.12, _COLOURS[number % len(_COLOURS)],
+                             x - left, top - y - 0.12, colour_of(number, dark=False),
                              escape(name)))
     for target in targets:
         x, y = at(target.x_m, target.y_m).split(',')
@@ -68,7 +58,7 @@ def page_of(result: Mapping[str, Any], walls: Sequence[Sequence[float]],
 
     :param result: from :func:`mhri.drill.results.result_of`
     :param walls: x1, y1, x2, y2 [m] of each wall of the building
-    :param earlier: runs of the same drill to stand beside it
+    :param earlier: runs of the same drill, for comparison
     """
     robots: List[Sequence[str]] = [
         (name, robot['type'], '{:.1f} s'.format(robot['driven_s']),
@@ -85,11 +75,11 @@ def page_of(result: Mapping[str, Any], walls: Sequence[Sequence[float]],
         '<style>{}</style><h1>{}</h1>'.format(_STYLE, title),
         '<p>{} after {:.1f} s, driven by a {}.</p>'.format(
             escape(result['ended'].capitalize()), result['time_s'], escape(result['operator'])),
-        _table(heads_of(result, earlier), rows_of([result, *earlier])),
+        table(heads_of(result, earlier), rows_of([result, *earlier])),
         _picture(result, walls, targets),
         '<p><small>From above; a name is where the robot began, a full circle a target '
         'that was found.</small></p>',
-        _table(('robot', 'type', 'driven', 'neglected', 'distance', 'contacts'), robots),
-        _table(('target', 'found by', 'at'), found),
-        _table(('robot', 'fault', 'at', 'reaction'), reactions),
+        table(('robot', 'type', 'driven', 'neglected', 'distance', 'contacts'), robots),
+        table(('target', 'found by', 'at'), found),
+        table(('robot', 'fault', 'at', 'reaction'), reactions),
         '<p><small>{}</small></p></html>'.format(escape(NOTE)), ''))

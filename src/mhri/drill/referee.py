@@ -1,18 +1,18 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The referee of a drill: sees the true places of all robots, and measures.
+"""The referee of a drill, which measures by the true poses of all robots.
 
-Terms and formulas are after the literature, not certified by anybody:
+Terms and formulas follow the literature, but are not certified:
 
-- *Time driven* is interaction time, *time neglected* the rest until the end, *attention* the
-  interaction time's share of both (robot attention demand): Olsen and Goodrich, "Metrics for
+- *Time driven* is interaction time, *time neglected* the rest until the end, *attention* the share
+  of interaction time in both (robot attention demand): Olsen and Goodrich, "Metrics for
   Evaluating Human-Robot Interactions", PERMIS 2003.
-- *Neglect tolerance* is how long a robot that is left alone goes on being active, here the mean;
-  for how it bounds a team: Crandall, Goodrich, Olsen and Nielsen, "Validating Human-Robot
+- *Neglect tolerance* is the time for which a neglected robot stays active, here the mean; on how it
+  limits the size of a team: Crandall, Goodrich, Olsen and Nielsen, "Validating Human-Robot
   Interaction Schemes in Multitasking Environments", IEEE Trans. SMC-A 35 (4), 2005.
 - *Fan-out* is the activity of all robots over the interaction time: Olsen and Wood, "Fan-out:
   Measuring Human Control of Multiple Robots", CHI 2004.
-- The tasks are after the standard test methods for response robots of NIST and the subcommittee
+- The tasks follow the standard test methods for response robots of NIST and the subcommittee
   ASTM E54.09: maneuvering as in ASTM E2829 (sustained speed), searching a maze as in ASTM E2853.
 """
 from dataclasses import dataclass, field
@@ -23,19 +23,19 @@ import numpy as np
 
 from mhri.drill.scenario import Scenario, Target
 
-# A robot touches something below the first gap, and has let go of it above the second [m].
+# A contact begins below the first gap and ends above the second [m].
 TOUCH_M, CLEAR_M = 0.01, 0.04
-# Less than this is no movement [m/s, rad/s].
+# A robot below both speeds does not move [m/s, rad/s].
 STILL_MPS, STILL_RAD_S = 0.01, 0.05
-# Over so long the movement is looked at [s]; a longer pause of the referee counts as no more.
-WINDOW_S, MOST_STEP_S = 0.2, 1.0
+# Time window for judging movement, and maximum length of a time step [s].
+WINDOW_S, MAX_STEP_S = 0.2, 1.0
 ALL_FOUND, TIME_UP, LEFT = 'all found', 'time is up', 'left'
 
 Disc = Tuple[float, float, float]
 
 
 class TruePose(NamedTuple):
-    """Where a robot is in the plan [m, m, rad]."""
+    """The pose of a robot in the plan [m, m, rad]."""
 
     x_m: float
     y_m: float
@@ -43,7 +43,7 @@ class TruePose(NamedTuple):
 
 
 class Doing(NamedTuple):
-    """What the operator does: checked robots, whether the stick is pushed, stop-all."""
+    """The state of the operator: selected robots, whether the stick is pushed, STOP ALL."""
 
     selected: Tuple[str, ...] = ()
     pushed: bool = False
@@ -52,7 +52,7 @@ class Doing(NamedTuple):
 
 @dataclass
 class RobotTally:
-    """What was measured of one robot: seconds, metres, counts."""
+    """The figures of one robot: seconds, metres, counts."""
 
     driven_s: float = 0.0
     neglected_s: float = 0.0
@@ -66,7 +66,7 @@ class RobotTally:
 
 @dataclass
 class Found:
-    """A target that was found: by whom, and when [s since the drill began]."""
+    """A found target, with the robot and the time from the start of the drill [s]."""
 
     target: str
     robot: str
@@ -75,9 +75,9 @@ class Found:
 
 @dataclass
 class Reaction:
-    """A fault, and what the operator did first after it: ``how`` '' for nothing.
+    """A fault, and the operator's first action after it: ``how``, '' if none.
 
-    ``after_s`` is the time between [s], None without a reaction.
+    ``after_s`` is the reaction time [s], None without a reaction.
     """
 
     robot: str
@@ -88,7 +88,7 @@ class Reaction:
 
 
 class _Follower:
-    """Follows one robot: moves, touches, is left alone."""
+    """Measures one robot: movement, contacts, neglect."""
 
     def __init__(self, radius_m: float) -> None:
         self.radius_m = radius_m
@@ -98,7 +98,7 @@ class _Follower:
         self._touches = False
         self._left_at: Optional[float] = None
 
-    def see(self, pose: TruePose, gap_m: float, now: float, dt: float) -> None:
+    def update(self, pose: TruePose, gap_m: float, now: float, dt: float) -> None:
         tally, before = self.tally, self._pose
         if before is not None and dt > 0.0:
             way = math.hypot(pose.x_m - before.x_m, pose.y_m - before.y_m)
@@ -123,17 +123,17 @@ class _Follower:
             return
         tally.neglected_s += dt
         if self._left_at is not None and not active:
-            # It moved a little after it was left: by its task, or until it had braked.
+            # The time for which it moved on alone: by its task, or while braking.
             tally.tolerances_s.append(max(0.0, self._moved_at - self._left_at))
             self._left_at = None
 
 
 class Referee:
-    """Measures one run of a drill; times are seconds of a clock that never goes back.
+    """Measures one run of a drill; times are [s, monotonic].
 
     :param radii: {robot: radius of its body [m]}
-    :param distance: function (x, y) -> metres to the nearest fixed thing
-    :param walls: array (n, 4) of x1, y1, x2, y2 [m], which block the sight
+    :param distance: function (x, y) -> distance to the nearest fixed obstacle [m]
+    :param walls: array (n, 4) of x1, y1, x2, y2 [m], which block the view
     """
 
     def __init__(self, scenario: Scenario, radii: Mapping[str, float],
@@ -155,34 +155,34 @@ class Referee:
 
     @property
     def elapsed_s(self) -> float:
-        """Seconds since the beginning."""
+        """The time since the start [s]."""
         return self._now - self._begun
 
     @property
     def left(self) -> Tuple[Target, ...]:
-        """The targets that are still to be found."""
+        """The targets not found yet."""
         return tuple(self._left)
 
     def tally(self, robot: str) -> RobotTally:
-        """Return what was measured of a robot so far."""
+        """Return the figures of a robot so far."""
         return self._robots[robot].tally
 
     def on_fault(self, robot: str, fault: str) -> None:
-        """Note that a fault begins now."""
+        """Handle the start of a fault."""
         self.reactions.append(Reaction(robot, fault, self.elapsed_s))
 
-    def see(self, now: float, poses: Mapping[str, TruePose], others: Sequence[Disc],
-            doing: Doing) -> None:
-        """Take in one moment.
+    def update(self, now: float, poses: Mapping[str, TruePose], others: Sequence[Disc],
+               doing: Doing) -> None:
+        """Handle one time step.
 
-        :param poses: of the robots that are there
-        :param others: what else stands around: x, y, radius [m]
+        :param poses: poses of the present robots
+        :param others: other obstacles: x, y, radius [m]
         """
-        dt, self._now = min(now - self._now, MOST_STEP_S), now
+        dt, self._now = min(now - self._now, MAX_STEP_S), now
         for name, robot in self._robots.items():
             pose = poses.get(name)
             if pose is not None:
-                robot.see(pose, self._gap(name, pose, poses, others), now, dt)
+                robot.update(pose, self._gap(name, pose, poses, others), now, dt)
             driven = doing.pushed and not doing.stopped and name in doing.selected
             robot.count(driven, now, dt)
         self._search(poses)
@@ -191,7 +191,7 @@ class Referee:
 
     def _gap(self, name: str, pose: TruePose, poses: Mapping[str, TruePose],
              others: Sequence[Disc]) -> float:
-        """Return how far a robot's body is from the nearest thing [m]."""
+        """Return the distance of a robot's body to the nearest obstacle [m]."""
         gaps = [self._distance(pose.x_m, pose.y_m)]
         gaps += [math.hypot(x - pose.x_m, y - pose.y_m) - radius for x, y, radius in others]
         gaps += [math.hypot(other.x_m - pose.x_m, other.y_m - pose.y_m)
@@ -214,7 +214,7 @@ class Referee:
             and not self._hidden(pose, dx, dy)
 
     def _hidden(self, pose: TruePose, dx: float, dy: float) -> bool:
-        """Tell whether a wall crosses the line of sight."""
+        """Return whether a wall crosses the line of sight."""
         px, py = self._walls[:, 0] - pose.x_m, self._walls[:, 1] - pose.y_m
         ex, ey = self._walls[:, 2] - self._walls[:, 0], self._walls[:, 3] - self._walls[:, 1]
         across = dx * ey - dy * ex
@@ -223,7 +223,7 @@ class Referee:
         return bool(((along > 0.0) & (along < 1.0) & (share >= 0.0) & (share <= 1.0)).any())
 
     def _react(self, doing: Doing) -> None:
-        """Note a stop, and the first thing that the operator does after a fault."""
+        """Record a stop, and the operator's first action after a fault."""
         before, how = self._doing, ''
         if doing.stopped and not before.stopped:
             self.stops_s.append(self.elapsed_s)
@@ -238,7 +238,7 @@ class Referee:
                 reaction.after_s = self.elapsed_s - reaction.at_s
 
     def over(self) -> str:
-        """Return why the drill is over, '' while it is not."""
+        """Return the reason for the end of the drill, '' while running."""
         if not self._left:
             return ALL_FOUND
         return TIME_UP if self.elapsed_s >= self._scenario.limit_s else ''

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What came of a drill: as a file, as a table, and several runs side by side."""
+"""The result of a drill: as a file, as a table, and in comparison with other runs."""
 from dataclasses import asdict
 from datetime import datetime
 import math
@@ -23,10 +23,10 @@ def _mean(values: Sequence[float]) -> Any:
 
 
 def result_of(scenario: Scenario, referee: Referee, wall_s: float, operator: str) -> Dict[str, Any]:
-    """Return the result of a run as plain values; what cannot be told is None.
+    """Return the result of a run as plain values; unknown figures are None.
 
-    :param wall_s: when it began [s since 1970]
-    :param operator: who drove: "person" or "script"
+    :param wall_s: start time [s since 1970]
+    :param operator: "person" or "script"
     """
     tallies = {name: referee.tally(name) for name in scenario.robots}
     driven = sum(tally.driven_s for tally in tallies.values())
@@ -63,14 +63,14 @@ def as_yaml(result: Mapping[str, Any]) -> str:
 
 
 def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> List[str]:
-    """Return the lines of a table whose columns are as wide as they must be."""
+    """Return the lines of a text table with columns of minimum width."""
     widths = [max(len(row[place]) for row in (head, *rows)) for place in range(len(head))]
     return ['  '.join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip()
             for row in (head, *rows)]
 
 
 def heads_of(result: Mapping[str, Any], earlier: Sequence[Mapping[str, Any]]) -> Tuple[str, ...]:
-    """Return the heads of a table of a run and of earlier ones: who drove, and when."""
+    """Return the headings of a table of a run and earlier ones: operator and time."""
     return ('', 'this run ({})'.format(result['operator']), *('{} {}'.format(
         each['operator'], '{:%Y-%m-%d %H:%M}'.format(datetime.fromtimestamp(each['begun']))
         if each['begun'] else 'rehearsed') for each in earlier))
@@ -78,9 +78,9 @@ def heads_of(result: Mapping[str, Any], earlier: Sequence[Mapping[str, Any]]) ->
 
 def lines_of(result: Mapping[str, Any],
              earlier: Sequence[Mapping[str, Any]] = ()) -> List[str]:
-    """Return a run as lines to be printed.
+    """Return a run as lines of text.
 
-    :param earlier: runs of the same drill to stand beside it
+    :param earlier: runs of the same drill, for comparison
     """
     lines = ['{}: {} after {:.1f} s'.format(result['title'], result['ended'], result['time_s'])]
     lines += table(heads_of(result, earlier), rows_of([result, *earlier]))
@@ -98,7 +98,7 @@ def lines_of(result: Mapping[str, Any],
 
 
 def compared(results: Sequence[Mapping[str, Any]], names: Sequence[str]) -> List[str]:
-    """Return several runs side by side as lines."""
+    """Return several runs side by side, as lines of text."""
     return table(('', *names), [('drill', *(str(result['drill']) for result in results)),
                                 ('driven by', *(str(result['operator']) for result in results)),
                                 *rows_of(results)])

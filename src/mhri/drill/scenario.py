@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A drill as its file describes it: place, robots, what to find, faults at their times, the end."""
+"""The scenario of a drill, from its file: plan, robots, targets, timed faults, time limit."""
 from dataclasses import dataclass, replace
 import math
 import re
@@ -9,8 +9,8 @@ from typing import Dict, Iterable, List, Optional, Tuple
 from mhri.base.config import parse_yaml, Section
 from mhri.sim.faults import checked_duration, checked_value, Fault, fault_named, FaultRefused
 
-# Metres from the origin of a plan; robots of a drill; seconds of a drill.
-FARTHEST_M, MOST_ROBOTS, MOST_S = 1000.0, 12, 7200.0
+# Maximum distance from the origin of a plan [m], number of robots, duration of a drill [s].
+FARTHEST_M, MAX_ROBOTS, MAX_S = 1000.0, 12, 7200.0
 _NAME = re.compile(r'[a-z][a-z0-9_]*\Z')
 
 Point = Tuple[float, float]
@@ -18,10 +18,10 @@ Point = Tuple[float, float]
 
 @dataclass(frozen=True)
 class Target:
-    """Something to find, or a place to pass, at x, y [m] of the plan.
+    """An object to find, or a place to pass, at x, y [m] of the plan.
 
-    It counts once a robot, the one named or any, is within ``range_m`` of it, no wall between, and
-    has it within ``view_rad`` (all round: 2 pi) around its heading.
+    It is found once a robot, the named one or any, is within ``range_m`` of it, without a wall
+    between, and has it within ``view_rad`` (full circle: 2 pi) around its heading.
     """
 
     name: str
@@ -34,9 +34,9 @@ class Target:
 
 @dataclass(frozen=True)
 class TimedFault:
-    """A fault of one robot, so many seconds after the drill has begun; see ``SetFault.srv``.
+    """A fault of one robot at a time from the start of the drill; see ``SetFault.srv``.
 
-    ``for_s`` is 0 for a delay that the link has anyway, and that nobody is to react to.
+    ``for_s`` is 0 for the regular delay of a link, which needs no reaction.
     """
 
     robot: str
@@ -50,9 +50,9 @@ class TimedFault:
 class Scenario:
     """A drill.
 
-    ``plan`` is the file of its building, beside its own; ``types`` are those of the robots bot1,
-    bot2, ... as in ``sim.launch``. It ends when all targets are found, ``in_order`` if that
-    matters, or after ``limit_s``. ``routes`` are the ways that the scripted operator takes.
+    ``plan`` is the file of its building; ``types`` are the types of the robots bot1, bot2, ... as
+    in ``sim.launch``. It ends when all targets are found, with ``in_order`` in this order, or
+    after ``limit_s``. ``routes`` are the routes of the scripted operator.
     """
 
     name: str
@@ -73,9 +73,9 @@ class Scenario:
 
 
 def on_links(faults: Iterable[TimedFault], delay_s: float) -> List[TimedFault]:
-    """Return faults in order of time, for links that have a delay of their own [s, each way].
+    """Return faults in order of time, for links with a regular delay in each direction [s].
 
-    A delay adds to it, and gives way to it when it ends.
+    A fault's delay is added to the regular one, which is restored at the end of the fault.
     """
     found: List[TimedFault] = []
     for fault in faults:
@@ -107,11 +107,11 @@ def _fault(section: Section, robots: Tuple[str, ...]) -> TimedFault:
     try:
         fault = fault_named(key)
         value = checked_value(fault, section.number('value', -1e6, 1e6, math.nan))
-        for_s = section.number('for', 0.1, MOST_S)
+        for_s = section.number('for', 0.1, MAX_S)
         checked_duration(fault, for_s)
     except FaultRefused as error:
         raise section.error('fault', str(error))
-    timed = TimedFault(robot, fault, value, section.number('at', 0.0, MOST_S), for_s)
+    timed = TimedFault(robot, fault, value, section.number('at', 0.0, MAX_S), for_s)
     section.close()
     return timed
 
@@ -132,14 +132,14 @@ def _route(section: Section, robot: str) -> Tuple[Point, ...]:
 def parse_scenario(text: str, origin: str, name: str) -> Scenario:
     """Return the :class:`Scenario` of a YAML text.
 
-    :param name: of its file, without the ending
-    :raises ConfigError: names the file and the wrong key
+    :param name: name of its file, without the extension
+    :raises ConfigError: the text is invalid; the error has the file and the key
     """
     top = parse_yaml(text, origin)
     types = top.texts('robots')
-    if not 1 <= len(types) <= MOST_ROBOTS or not all(_NAME.match(kind) for kind in types):
+    if not 1 <= len(types) <= MAX_ROBOTS or not all(_NAME.match(kind) for kind in types):
         raise top.error('robots', 'expected 1 to {} types, e.g. turtlebot3_burger'.format(
-            MOST_ROBOTS))
+            MAX_ROBOTS))
     robots = tuple('bot{}'.format(number + 1) for number in range(len(types)))
     plan = top.text('plan')
     if not re.match(r'[a-z0-9_]+\.yaml\Z', plan):
@@ -150,7 +150,7 @@ def parse_scenario(text: str, origin: str, name: str) -> Scenario:
         tuple(_target(row, robots) for row in top.sections('targets')),
         top.flag('in_order', False),
         tuple(_fault(row, robots) for row in top.sections('faults')) if 'faults' in top else (),
-        top.number('limit_s', 1.0, MOST_S), {robot: _route(routes, robot) for robot in robots})
+        top.number('limit_s', 1.0, MAX_S), {robot: _route(routes, robot) for robot in robots})
     routes.close()
     top.close()
     if not scenario.targets:

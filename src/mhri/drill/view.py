@@ -1,15 +1,15 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A running drill as the operator reads it: one line on the screen, and events."""
+"""A running drill on the screen: one line, and events."""
 from dataclasses import dataclass
 from typing import List, Optional, Tuple
 
 WAITING, RUNNING, ENDED = range(3)
-# The referee says once a second how it goes; a computer that is busy may be late [s].
+# Timeout of the referee, which publishes once a second, with a margin for busy computers [s].
 SILENT_S = 10.0
-# What has ended stays on the screen for so long [s]; the event list keeps it.
+# Time for which the end of a drill is shown [s]; the event list keeps it.
 STAYS_S = 60.0
-# A recording has gone back to before this was said [s].
+# At lower ages, a replay has jumped back to before this state [s].
 _EARLY_S = -1.0
 
 
@@ -20,7 +20,7 @@ def minutes_text(seconds: float) -> str:
 
 @dataclass(frozen=True)
 class DrillView:
-    """What the referee said last, ``at`` a time of day [s]; see ``DrillState.msg``."""
+    """The referee's newest state, of the time of day ``at`` [s]; see ``DrillState.msg``."""
 
     at: float
     title: str
@@ -36,12 +36,12 @@ class DrillView:
 
     @property
     def count(self) -> str:
-        """How many are found, e.g. "3 of 8 found"."""
+        """The number of targets found, e.g. "3 of 8 found"."""
         return '{} of {} found'.format(len(self.found), len(self.found) + len(self.left))
 
     @property
     def end(self) -> str:
-        """How it ended, e.g. "all 8 found after 1:44" or "time is up after 8:00, 3 of 8 found"."""
+        """The outcome, e.g. "all 8 found after 1:44" or "time is up after 8:00, 3 of 8 found"."""
         after = ' after ' + minutes_text(self.elapsed_s)
         if not self.left:
             return 'all {} found{}'.format(len(self.found), after) if self.found[1:] \
@@ -49,12 +49,12 @@ class DrillView:
         return '{}{}, {}'.format(self.ended, after, self.count)
 
     def silent(self, now: float) -> bool:
-        """Tell whether its referee has stopped without a word; ``now`` is the time of day [s]."""
+        """Return whether the referee is silent; ``now`` is the time of day [s]."""
         return self.phase != ENDED and now - self.at > SILENT_S
 
 
 def drill_texts(drill: DrillView, now: float) -> Tuple[str, ...]:
-    """Return what the screen says of a drill, the longest first; nothing long after its end.
+    """Return the screen's texts on a drill, longest first; () long after its end.
 
     :param now: the time of day [s]
     """
@@ -79,16 +79,16 @@ def drill_texts(drill: DrillView, now: float) -> Tuple[str, ...]:
 
 
 def drill_changes(old: Optional[DrillView], new: DrillView) -> List[Tuple[str, str]]:
-    """Return what has happened between two words of the referee, as (kind of event, sentence)."""
+    """Return the changes between two states of the referee, as (kind of event, sentence)."""
     name = 'drill {}: '.format(new.title)
     if old is None or new.title != old.title or new.phase < old.phase:
-        # Another run, whose beginning is to come; or nobody looked when this one began.
+        # A new run, or this screen missed the beginning of the current one.
         return [('drill.waits', name + new.about)] if new.phase == WAITING else []
-    told: List[Tuple[str, str]] = []
+    changes: List[Tuple[str, str]] = []
     if old.phase == WAITING != new.phase:
-        told.append(('drill.begun', name + 'begun'))
-    told += [('drill.found', '{}{} found'.format(name, target))
-             for target in new.found[len(old.found):]]
+        changes.append(('drill.begun', name + 'begun'))
+    changes += [('drill.found', '{}{} found'.format(name, target))
+                for target in new.found[len(old.found):]]
     if old.phase != ENDED == new.phase:
-        told.append(('drill.ended', name + new.end + ('; page: ' + new.page) * bool(new.page)))
-    return told
+        changes.append(('drill.ended', name + new.end + ('; page: ' + new.page) * bool(new.page)))
+    return changes

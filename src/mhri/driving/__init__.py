@@ -1,3 +1,3 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The line from stick to robot."""
+"""The path of commands from the stick to the robots."""

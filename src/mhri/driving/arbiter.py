@@ -1,55 +1,77 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Who drives, and what makes everything stop: the rules of the mux, without ROS or a clock.
+"""The active source and its command: one state machine, without ROS or a clock.
 
-One :class:`Arbiter` owns the control mode. Time is passed in as seconds of a clock that never goes
-back. Every method that may change what the robots should do returns the :class:`Velocity` to send
-at once, or None to send nothing; :meth:`Arbiter.tick` does the same as time passes, and
-:meth:`Arbiter.next_tick` says when to call it.
+One :class:`Arbiter` owns the control mode. Time is passed in as seconds of a monotonic clock. Every
+method that may change the operator's command returns the :class:`Velocity` to pass on at once, or
+None for nothing; :meth:`Arbiter.tick` does the same as time passes, and :meth:`Arbiter.next_tick`
+returns when to call it.
 
-States and what leads out of them::
+The states::
 
-    STOPPED        stop-all is in force                 release -> WAIT_NEUTRAL
-    WAIT_NEUTRAL   nothing moves until the active       neutral seen -> READY
-                   source has been seen at neutral
-    READY          fresh source at neutral              deflected -> DRIVING
-    DRIVING        a command other than zero            neutral or dead-man released -> READY
+    STOPPED        stop-all is in force
+    WAIT_NEUTRAL   nothing moves until the active source has been at neutral
+    IDLE           the same, after silence at rest; the zeros have been sent
+    READY          a fresh source at rest
+    DRIVING        a nonzero command
 
-These lead from READY and DRIVING to WAIT_NEUTRAL: a silent, suspended, lost or exchanged source, a
-change of mode, a robot that joins the selection, the release of the enabling pedal, a dead-man
-button pressed while the stick is deflected, and the loss of the master or of the gates. A dead-man
-button counts as released until its device was seen to release it once: one that is taped down is
-none. Stop-all leads from anywhere to STOPPED. Each of these starts the zeros (except silence at
-rest, after which they have already been sent): one at once, more at :data:`REPEAT_HZ` for
-:data:`ZEROS_S`, then silence, since endless zeros would block a robot's own navigation behind its
-``cmd_vel_mux`` (rqt_common_plugins#180).
+:data:`TRANSITIONS` lists the transitions. HOLD stands for every event that requires neutral: a
+suspended, lost or exchanged source, a change of mode, a robot that joins the selection, the release
+of the enabling pedal, the loss of the master, another operator. A dead-man button counts as
+released until its device has released it once, so one that is taped down has no effect. One zero is
+sent at once and more at :data:`REPEAT_HZ` for :data:`ZEROS_S`, then nothing: endless zeros would
+block a robot's own navigation behind its ``cmd_vel_mux`` (rqt_common_plugins#180).
 """
 import collections
 import math
 from typing import Callable, Counter, Dict, FrozenSet, Iterable, Optional, Tuple
 
-from mhri.base.limits import speed_limit_problem, Velocity, ZERO
+from mhri.base import reasons
+from mhri.base.limits import Velocity, ZERO
 from mhri.devices.profile import JoyRefused, Stick, Wanted
 from mhri.driving.sources import MuxConfig, Source
 
-STOPPED = 'stopped'
-WAIT_NEUTRAL = 'wait_neutral'
-READY = 'ready'
-DRIVING = 'driving'
+STOPPED, WAIT_NEUTRAL, IDLE = 'stopped', 'wait_neutral', 'idle'
+READY, DRIVING = 'ready', 'driving'
+STATES = (STOPPED, WAIT_NEUTRAL, IDLE, READY, DRIVING)
+# Events of the active source: at neutral while that is required; at rest (centred, or not
+# enabled); deflected; silent; its dead-man button pressed while deflected. Then other events.
+CENTRED, RESTS, PUSHED, SILENT, PRESSED = 'centred', 'rests', 'pushed', 'silent', 'pressed'
+HOLD, STOP, RELEASE = 'hold', 'stop', 'release'
+# Actions: send zeros from now on, the command, a zero if zeros are still being sent, or nothing.
+ZEROS, COMMAND, LATER_ZERO, NOTHING = 'zeros', 'command', 'later_zero', 'nothing'
+#: {(state, event): (next state, action)}; any other pair changes nothing
+TRANSITIONS = {
+    (WAIT_NEUTRAL, CENTRED): (READY, ZEROS),
+    (IDLE, CENTRED): (READY, LATER_ZERO),
+    (READY, RESTS): (READY, LATER_ZERO),
+    (READY, PUSHED): (DRIVING, COMMAND),
+    (READY, PRESSED): (WAIT_NEUTRAL, LATER_ZERO),
+    (READY, SILENT): (IDLE, NOTHING),
+    (DRIVING, RESTS): (READY, ZEROS),
+    (DRIVING, PUSHED): (DRIVING, COMMAND),
+    (DRIVING, SILENT): (WAIT_NEUTRAL, ZEROS),
+    (STOPPED, RELEASE): (WAIT_NEUTRAL, NOTHING),
+    (STOPPED, HOLD): (STOPPED, ZEROS),
+    **{(state, HOLD): (WAIT_NEUTRAL, ZEROS) for state in (WAIT_NEUTRAL, IDLE, READY, DRIVING)},
+    **{(state, STOP): (STOPPED, ZEROS) for state in STATES}}
+_WAITING = (WAIT_NEUTRAL, IDLE)
 
 REPEAT_HZ, ZEROS_S = 20.0, 0.5
-# An enabling pedal not heard for this long counts as released.
+# An enabling pedal silent for this long counts as released.
 ENABLING_TIMEOUT_S = 0.25
 _PERIOD_S = 1.0 / REPEAT_HZ
-# For a source that has said nothing yet: it asks for nothing, but may not be at rest.
+#: The command in a message, with sideways motion (True) or without.
+Read = Callable[[bool], Wanted]
+# For a source without a message so far: no command, but it may not be at rest.
 _UNHEARD = Stick(0.0, 0.0, neutral=False, held=False)
 
 
 class Arbiter:
-    """Decides which source drives and which velocity the robots are sent.
+    """Decides which source drives and which velocity is sent to the robots.
 
     :param config: :class:`mhri.driving.sources.MuxConfig`
-    :param now: the time of creation [s]; the first zeros start here, to stop whatever an earlier
+    :param now: the time of creation [s]; the first zeros start here, to stop robots that an earlier
         mux left moving
     """
 
@@ -62,15 +84,19 @@ class Arbiter:
         self._stick: Wanted = _UNHEARD
         self._stick_at = -math.inf
         self._device: object = None
-        # Of each source, the device whose dead-man button was seen released.
+        # For each source, the device whose dead-man button has been released.
         self._let_go: Dict[str, object] = {}
         self._selected: FrozenSet[str] = frozenset()
         self._enabling, self._enabled_at = config.enabling, -math.inf
         self._automatic = config.automatic_switching
-        # The last word of every source that was listened to, and of which device.
-        self._last: Dict[str, Tuple[Wanted, object]] = {}
+        # Whether sideways motion counts: only if a selected robot is holonomic.
+        self._sideways = False
+        # {source: (last command, its device, function that reads the message again)}
+        self._last: Dict[str, Tuple[Wanted, object, Read]] = {}
         self._zeros_until = now + ZEROS_S
         self._next_repeat = now
+        #: how often neutral was required since the start
+        self.holds = 0
         self.refused: Counter[str] = collections.Counter()
         self.ignored: Counter[str] = collections.Counter()
 
@@ -91,7 +117,7 @@ class Arbiter:
 
     @property
     def state(self) -> str:
-        """One of STOPPED, WAIT_NEUTRAL, READY, DRIVING."""
+        """One of :data:`STATES`."""
         return self._state
 
     @property
@@ -100,43 +126,44 @@ class Arbiter:
         return self._state == STOPPED
 
     def waits_for(self, now: float) -> str:
-        """Return what keeps the operator from moving robots.
+        """Return why the operator cannot move robots.
 
-        :returns: '' (nothing: ready or driving), 'release' (stop-all), 'source' (nothing fresh is
-            heard from the active source), 'neutral' (the stick is not centred), 'enabling' (the
-            enabling pedal is not pressed) or 'dead_man' (that button is not held, or was never seen
-            released)
+        :returns: '' (ready or driving), or one of :mod:`mhri.base.reasons`: RELEASE (stop-all),
+            SOURCE (no recent message from the active source), NEUTRAL (the stick is not centred),
+            ENABLING (the enabling pedal is not pressed) or DEAD_MAN (that button is not held, or
+            has never been released)
         """
         if self._state == STOPPED:
-            return 'release'
+            return reasons.RELEASE
         if not self._fresh(now):
-            return 'source'
-        if self._state == WAIT_NEUTRAL:
-            return 'neutral'
+            return reasons.SOURCE
+        if self._state in _WAITING:
+            return reasons.NEUTRAL
         if not self.enabled(now):
-            return 'enabling'
-        return '' if self._stick.held else 'dead_man'
+            return reasons.ENABLING
+        return '' if self._stick.held else reasons.DEAD_MAN
 
     def pushed(self, now: float) -> bool:
-        """Tell whether the stick of the active source is held, whatever becomes of it."""
+        """Return whether the stick of the active source is deflected, even if it has no effect."""
         return self._fresh(now) and not self._stick.neutral
 
     @property
     def cause(self) -> str:
-        """The event that last led to WAIT_NEUTRAL or STOPPED, e.g. 'stale', 'mode', 'start'."""
+        """The last event that required neutral or stopped, e.g. 'stale', 'mode', 'start'."""
         return self._cause
 
-    def on_message(self, name: str, device: object, now: float, read: Callable[[], Wanted],
+    def on_message(self, name: str, device: object, now: float, read: Read,
                    pressed: bool = False) -> Optional[Velocity]:
-        """Take in one message of a source.
+        """Handle one message of a source.
 
         :param name: the source that sent it
         :param device: identifies the publisher (its ROS name); another publisher counts as a newly
             connected device
-        :param read: returns what the message asks for; not called if that does not matter
-        :param pressed: whether its first button is, for the enabling pedal
+        :param read: returns the command in the message, with sideways motion or without; called
+            only if needed
+        :param pressed: whether its first button is pressed, for the enabling pedal
         :returns: the velocity to send now, or None
-        :raises JoyRefused: ``read`` did; only the counters change
+        :raises JoyRefused: raised by ``read``; only the counters change
         :raises KeyError: no such source
         """
         if name == self._enabling:
@@ -146,79 +173,89 @@ class Arbiter:
             self.ignored[name] += 1
             return None
         try:
-            stick = read()
+            stick = self._read(name, device, read)
         except JoyRefused as refusal:
             self.refused[refusal.kind] += 1
             raise
-        if not stick.held:
-            self._let_go[name] = device
-        elif stick.has_dead_man and self._let_go.get(name) != device:
-            stick = Stick(0.0, 0.0, stick.neutral, held=False, has_dead_man=True)
-        before, self._last[name] = self._last.get(name, (_UNHEARD, None)), (stick, device)
+        before = self._last.get(name, (_UNHEARD, None))
+        self._last[name] = stick, device, read
         if active:
             return self._on_active(stick, device, now)
-        still = self._state in (READY, WAIT_NEUTRAL) and now >= self._zeros_until
+        still = self._state in (READY,) + _WAITING and now >= self._zeros_until
         touched = before[0].neutral and before[1] == device and not stick.neutral
         if self._automatic and still and touched:
-            # It must be seen at neutral once more before it moves anything.
+            # It must return to neutral once before it moves anything.
             return self.on_mode(name, now)
         self.ignored[name] += 1
         return None
 
+    def _read(self, name: str, device: object, read: Read) -> Wanted:
+        """Return a source's command; its dead-man button counts once it has been released."""
+        stick = read(self._sideways)
+        if not stick.held:
+            self._let_go[name] = device
+        elif stick.has_dead_man and self._let_go.get(name) != device:
+            return Stick(0.0, 0.0, stick.neutral, held=False, has_dead_man=True)
+        return stick
+
+    def let_sideways(self, counts: bool, now: float) -> Optional[Velocity]:
+        """Set whether sideways motion counts: only while a selected robot is holonomic.
+
+        A stick at neutral without the sideways axis may be off neutral with it, so neutral is
+        required again.
+
+        :returns: the velocity to send now, or None
+        """
+        if counts == self._sideways:
+            return None
+        self._sideways = counts
+        for name, (_, device, read) in self._last.items():
+            self._last[name] = self._read(name, device, read), device, read
+        if self._stick is not _UNHEARD:
+            self._stick = self._last[self._mode][0]
+        return self.on_hold('selection', now) if counts else None
+
     def _on_active(self, stick: Wanted, device: object, now: float) -> Optional[Velocity]:
-        """Take in what the active source asks for."""
+        """Handle a command of the active source."""
         exchanged = self._device not in (None, device) and self._state in (READY, DRIVING)
         was_fresh, before = self._fresh(now), self._stick
         self._stick, self._stick_at, self._device = stick, now, device
-        if self._state == STOPPED:
-            return None
-        if self._state != WAIT_NEUTRAL and (exchanged or not was_fresh):
+        if self._state in (READY, DRIVING) and (exchanged or not was_fresh):
             zero = self.on_hold('device' if exchanged else 'stale', now)
             return self._follow(stick, now) or zero
-        if self._state == READY and stick.held and not before.held and not stick.neutral:
+        if stick.held and not before.held and not stick.neutral and self._state == READY:
             # Pressing the button must not set robots in motion.
-            self._enter(WAIT_NEUTRAL, 'dead_man')
-            return self._later_zero(now)
+            return self._on(PRESSED, now, 'dead_man')
         return self._follow(stick, now)
 
     def _follow(self, stick: Wanted, now: float) -> Optional[Velocity]:
-        """Apply an accepted stick in WAIT_NEUTRAL, READY or DRIVING."""
-        if self._state == WAIT_NEUTRAL:
-            if not stick.neutral:
-                return None
-            idle = self._cause == 'idle'
-            self._enter(READY)
-            return self._later_zero(now) if idle else self._zeros(now)
-        if stick.is_zero() or not self.enabled(now):
-            if self._state == DRIVING:
-                self._enter(READY)
-                return self._zeros(now)
-            return self._later_zero(now)
-        self._enter(DRIVING)
-        return self._drive(now)
+        """Apply a command of the active source."""
+        if self._state in _WAITING:
+            return self._on(CENTRED, now) if stick.neutral else None
+        return self._on(RESTS if stick.is_zero() or not self.enabled(now) else PUSHED, now)
 
     def _on_enabling(self, pressed: bool, now: float) -> Optional[Velocity]:
-        """Take in the enabling pedal.
+        """Handle the enabling pedal.
 
         Releasing it stops everything. If it is pressed while the stick is deflected, nothing moves
-        until the stick has been centred: a returning foot must not set robots in motion.
+        until the stick has been centred: putting the foot back must not set robots in motion.
         """
         was, self._enabled_at = self.enabled(now), now if pressed else -math.inf
         if not pressed and self._state == DRIVING:
             return self.on_hold('enabling', now)
-        if pressed and not was and self._state == READY and not self._stick.neutral:
-            self._enter(WAIT_NEUTRAL, 'enabling')
+        if pressed and not was and not self._stick.neutral:
+            return self._on(PRESSED, now, 'enabling')
         return None
 
     def enabled(self, now: float) -> bool:
-        """Tell whether the enabling pedal allows motion; without one, it is always allowed."""
+        """Return whether the enabling pedal allows motion; without one, it is always allowed."""
         return self._enabling is None or now - self._enabled_at < ENABLING_TIMEOUT_S
 
     def on_selection(self, names: Iterable[str], now: float) -> Optional[Velocity]:
-        """Take note of the selected robots.
+        """Set the selected robots.
 
-        A robot that joins while others are driving must not leap: all wait until the stick is
-        centred.
+        A robot that joins while others are driving must not start with a jerk: all wait until the
+        stick is centred.
 
         :returns: the velocity to send now, or None
         """
@@ -240,12 +277,14 @@ class Arbiter:
             return None
         self._mode = name
         rests = self.source.rests and name in self._last
-        self._stick, self._device = self._last[name] if rests else (_UNHEARD, None)
+        self._stick, self._device = self._last[name][:2] if rests else (_UNHEARD, None)
         self._stick_at = now if rests else -math.inf
         return self.on_hold('mode', now)
 
     def on_lost(self, name: str, cause: str, now: float) -> Optional[Velocity]:
-        """Take note that a source was suspended or its device lost (cause 'suspended' or 'lost').
+        """Handle the suspension of a source or the loss of its device.
+
+        :param cause: 'suspended', 'lost', or another event that makes its last message invalid
 
         :returns: the velocity to send now, or None if the source is not the active one
         """
@@ -256,7 +295,7 @@ class Arbiter:
         return self.on_hold(cause, now)
 
     def on_hung(self, now: float) -> Optional[Velocity]:
-        """Forget what every source has said: this mux was asleep, so all of it is old.
+        """Discard the last message of every source: this mux was suspended, so all are old.
 
         :returns: the zero to send now
         """
@@ -265,26 +304,26 @@ class Arbiter:
         return self.on_lost(self._mode, 'hung', now)
 
     def on_hold(self, cause: str, now: float) -> Velocity:
-        """Stop what moves, and demand neutral before anything moves.
+        """Stop all motion, and require neutral before anything moves again.
 
         :returns: the zero to send now
         """
-        if self._state != STOPPED:
-            self._enter(WAIT_NEUTRAL, cause)
-        return self._zeros(now)
+        self.holds += 1
+        self._on(HOLD, now, cause)
+        return ZERO
 
     def engage_stop_all(self, now: float) -> Velocity:
         """Stop everything until :meth:`release_stop_all`; repeating it is safe.
 
         :returns: the zero to send now
         """
-        self._enter(STOPPED, 'stop_all')
-        return self._zeros(now)
+        self._on(STOP, now, 'stop_all')
+        return ZERO
 
     def release_stop_all(self, now: float) -> Optional[str]:
-        """Release stop-all; nothing moves until the stick has been seen at neutral once more.
+        """Release stop-all; nothing moves until the stick has been at neutral once more.
 
-        :returns: None on success, else a sentence that says why not
+        :returns: None on success, else a sentence with the reason
         """
         if self._state != STOPPED:
             return None
@@ -293,39 +332,32 @@ class Arbiter:
                    'source'.format(self.source.label)
         if not self._stick.neutral:
             return 'centre the stick first ({})'.format(self.source.label)
-        self._enter(WAIT_NEUTRAL, 'released')
+        self._on(RELEASE, now, 'released')
         return None
 
     def set_limits(self, linear_mps: float, angular_rad_s: float, now: float) -> Optional[Velocity]:
-        """Change the operator's speed limits; moving robots follow at once.
+        """Change the operator's speed limits, finite and >= 0; moving robots follow at once.
 
         :returns: the velocity to send now, or None
-        :raises ValueError: not finite, negative or absurdly large; the old limits stay in force
         """
-        problem = speed_limit_problem(linear_mps, angular_rad_s)
-        if problem:
-            self.refused['speed_limit'] += 1
-            raise ValueError(problem)
         self._limits = (linear_mps, angular_rad_s)
         if self._state == DRIVING and self._fresh(now) and self.enabled(now):
             return self._drive(now)
         return None
 
     def tick(self, now: float) -> Optional[Velocity]:
-        """Let time pass.
+        """Handle the passage of time.
 
         :returns: the velocity to send now, or None
         """
-        if self._state == DRIVING and not self._fresh(now):
-            return self.on_hold('stale', now)
         if self._state == DRIVING and not self.enabled(now):
             return self.on_hold('enabling', now)
         if self._state == WAIT_NEUTRAL and self._rests():
             return self._follow(self._stick, now)
-        if self._state == READY and not self._fresh(now):
-            # Already at rest, with the zeros sent: a device that speaks now and then must not cause
-            # zeros without end.
-            self._enter(WAIT_NEUTRAL, 'idle')
+        if (self._state, SILENT) in TRANSITIONS and not self._fresh(now):
+            # At rest the zeros have been sent: a device that publishes only now and then must not
+            # cause endless zeros.
+            return self._on(SILENT, now, 'stale')
         if now < self._next_repeat:
             return None
         if self._state == DRIVING:
@@ -347,29 +379,29 @@ class Arbiter:
         return min(times)
 
     def _fresh(self, now: float) -> bool:
-        """Tell whether the active source was heard recently enough to drive."""
+        """Return whether the last message of the active source is recent enough to drive."""
         return now - self._stick_at < self.source.timeout_s or self._rests()
 
     def _rests(self) -> bool:
-        """Tell whether the active source is silent at rest, and may be."""
+        """Return whether the active source is at rest and is allowed to be silent then."""
         return self.source.rests and self._stick.neutral and self._stick.is_zero()
 
-    def _enter(self, state: str, cause: Optional[str] = None) -> None:
-        """Change the state; the only place that does."""
-        self._state = state
-        if cause:
+    def _on(self, event: str, now: float, cause: str = '') -> Optional[Velocity]:
+        """Handle an event; the only place that changes the state."""
+        after = TRANSITIONS.get((self._state, event))
+        if after is None:
+            return None
+        self._state, action = after
+        if cause and self._state != STOPPED or event == STOP:
             self._cause = cause
-
-    def _zeros(self, now: float) -> Velocity:
-        """Begin the zeros."""
-        self._zeros_until, self._next_repeat = now + ZEROS_S, now + _PERIOD_S
-        return ZERO
-
-    def _later_zero(self, now: float) -> Optional[Velocity]:
-        """Return a zero while the zeros last, then None."""
-        return ZERO if now < self._zeros_until else None
+        if action == COMMAND:
+            return self._drive(now)
+        if action == ZEROS:
+            self._zeros_until, self._next_repeat = now + ZEROS_S, now + _PERIOD_S
+            return ZERO
+        return ZERO if action == LATER_ZERO and now < self._zeros_until else None
 
     def _drive(self, now: float) -> Velocity:
-        """Return the command of the present stick, and plan its repetition."""
+        """Return the command of the current stick, and schedule its repetition."""
         self._next_repeat = now + _PERIOD_S
         return self._stick.velocity(self._limits)

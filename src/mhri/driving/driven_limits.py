@@ -1,40 +1,41 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The limits at which robots were driven: no parameter raises one under the operator's hand."""
+"""The limits in force while robots are driven: a parameter change cannot raise them meanwhile."""
 from typing import Collection, Dict, Mapping, Sequence
 
-from mhri.base.robot_types import Limits
-from mhri.driving.gate import common_limits
+from mhri.base.robot_types import common_limits, Limits
 
 
 class DrivenLimits:
-    """Keeps a robot that was driven to its limits until it is selected anew.
+    """Keeps a driven robot at its limits until it is selected again.
 
-    A limit that falls counts at once, and is the one to keep from then on.
+    A lower limit takes effect at once and is kept from then on.
     """
 
     def __init__(self) -> None:
         self._held: Dict[str, Limits] = {}
 
     def of(self, name: str, limits: Limits) -> Limits:
-        """Return what a robot is held to.
+        """Return the limits in force for a robot.
 
-        :param limits: what its type and parameters allow now
+        :param limits: its current limits by type and parameters
         """
         return common_limits([limits, self._held.get(name, limits)])
 
     def note(self, name: str, limits: Limits) -> None:
-        """Take in that the operator drives a robot, which these parameters allow so much."""
+        """Store the limits of a robot that the operator drives."""
         self._held[name] = self.of(name, limits)
 
     def select(self, names: Collection[str]) -> None:
-        """Take in what the operator selects; who is left out is free of it."""
+        """Handle the operator's selection; the limits of all other robots are dropped."""
         self._held = {name: held for name, held in self._held.items() if name in names}
 
     def kept(self) -> Dict[str, Sequence[float]]:
-        """Return what the next process has to know, as JSON values."""
-        return {name: [held.linear_mps, held.angular_rad_s] for name, held in self._held.items()}
+        """Return the state for the next process, as JSON values."""
+        return {name: [held.linear_mps, held.angular_rad_s, held.holonomic]
+                for name, held in self._held.items()}
 
     def restore(self, kept: Mapping[str, Sequence[float]]) -> None:
-        """Take back what another process has kept, of :meth:`kept`."""
-        self._held = {name: Limits(*values) for name, values in kept.items()}
+        """Restore the result of :meth:`kept` of the previous process."""
+        self._held = {name: Limits(linear, angular, bool(holonomic))
+                      for name, (linear, angular, holonomic) in kept.items()}

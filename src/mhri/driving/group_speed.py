@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""How selected robots stay together, and slow down with the slowest of their links."""
+"""Pace of the selected robots: common limits, and slower commands on slow links."""
 from typing import Iterable, Optional, Sequence
 
 from mhri.base.views import RobotView
@@ -17,11 +17,11 @@ def slowest_link(robots: Iterable[RobotView]) -> Optional[RobotView]:
 
 
 def pace_words(robots: Sequence[RobotView], together: bool, share: float) -> str:
-    """Return in words what limits the robots' pace.
+    """Describe what limits the robots' pace.
 
     :param robots: :class:`mhri.base.views.RobotView` of all
     :param together: whether all keep to the pace of the slowest
-    :param share: fraction of each command that is passed on, in (0, 1]; less than 1: a link is slow
+    :param share: fraction of each command that is passed on, in (0, 1]; below 1 on a slow link
     """
     if share < 1.0:
         worst, why = slowest_link(robots), 'a link is slow'
@@ -29,11 +29,11 @@ def pace_words(robots: Sequence[RobotView], together: bool, share: float) -> str
             why = 'the link to {} takes {:.0f} ms'.format(
                 worst.name, 1e3 * worst.figures.round_trip_s)
         return '{:.0f} % of the speed: {}'.format(100.0 * share, why)
-    return _together(robots) if together else 'each does its best'
+    return _together(robots) if together else 'each at top speed'
 
 
 def _together(robots: Iterable[RobotView]) -> str:
-    """Say what all selected robots keep to."""
+    """Describe the common limits of the selected robots."""
     known = [(robot.max_linear_mps, robot.max_angular_rad_s, robot.name) for robot in robots
              if robot.selected and robot.max_linear_mps is not None
              and robot.max_angular_rad_s is not None]

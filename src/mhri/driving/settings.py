@@ -1,13 +1,11 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""How the operator drives: speed limits, keeping together, keeping off obstacles."""
+"""The operator's drive settings: speed limits, common pace, obstacle brake."""
 from typing import NamedTuple, Optional, Sequence, Tuple
-
-from mhri.base.limits import speed_limit_problem
 
 
 class Settings(NamedTuple):
-    """What ``mhri/DriveSettings`` says, under the same names; limits in m/s and rad/s."""
+    """The fields of ``mhri/DriveSettings``, with the same names; limits in m/s and rad/s."""
 
     linear_mps: float
     angular_rad_s: float
@@ -24,14 +22,15 @@ class Settings(NamedTuple):
 def settings_problem(wished: Sequence[Settings]) -> Optional[str]:
     """Return why the settings in a wish cannot be used, or None if they can.
 
-    :param wished: :class:`Settings`: none (those in force stay) or one
+    :param wished: no :class:`Settings` (those in force stay) or one
     """
     if len(wished) > 1:
         return '{} settings: expected one at most'.format(len(wished))
     for one in wished:
-        problem = speed_limit_problem(*one.limits)
-        if problem is None and min(one.limits) <= 0.0:
-            problem = 'speed limit 0: expected more than 0'
-        if problem:
-            return problem
+        # Far above any robot: only wrong units or garbled messages exceed these.
+        for value, most, unit in ((one.linear_mps, 5.0, 'm/s'),
+                                  (one.angular_rad_s, 10.0, 'rad/s')):
+            if not 0.0 < value <= most:
+                return 'speed limit {!r}: expected more than 0, at most {:g} {}'.format(
+                    value, most, unit)
     return None

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Sources: the rows of ``mux.yaml``, one for each way to drive."""
+"""Sources: the rows of ``mux.yaml``, one for each input device or publisher."""
 from dataclasses import dataclass, replace
 from typing import Callable, List, Optional, Sequence, Tuple
 
@@ -9,22 +9,22 @@ from mhri.base.names import is_base_name, is_global_name
 from mhri.devices.profile import parse_profile, Profile
 
 
-# From a profile's name to (origin, text).
+# Maps a profile's name to (origin, text).
 ReadProfile = Callable[[str], Tuple[str, str]]
 
 JOY, TWIST = 'joy', 'twist'
-# The longest text the operator is shown.
+# Maximum length of a label on the screen.
 LONGEST_LABEL = 60
 
 
 @dataclass(frozen=True)
 class Source:
-    """One way to drive: where its messages come from and how to read them.
+    """One source of commands: its topic and how to read its messages.
 
     ``profile`` is None for a source of type ``twist``. ``timeout_s`` is the age [s] at which the
     last message no longer counts. ``suspend_service`` (type ``mhri/SetSuspended``) is called when
-    the mode enters (False) and leaves (True) the source; None if there is nothing to suspend.
-    ``holds``: the source sends changes only.
+    the source becomes active (False) and inactive (True); None if there is nothing to suspend.
+    With ``holds``, the source sends changes only.
     """
 
     name: str
@@ -38,7 +38,7 @@ class Source:
 
     @property
     def rests(self) -> bool:
-        """Whether it may be silent at rest; it counts as heard while its publisher is connected.
+        """Whether it may be silent at rest; it then counts as fresh while its publisher is there.
 
         Publishers of velocities often send one zero and nothing more.
         """
@@ -49,9 +49,9 @@ class Source:
 class MuxConfig:
     """The content of ``mux.yaml``: the sources in order, the first mode and the first limits.
 
-    ``enabling`` is the source whose first button is a dead-man for whatever drives, None for none.
-    With ``automatic_switching``, a source that is touched while everything stands still becomes the
-    active one. ``dead_man``: whether the dead-man buttons of profiles count.
+    ``enabling`` is the source whose first button is a dead-man switch for all sources, None for
+    none. With ``automatic_switching``, a source that is touched while everything stands still
+    becomes the active one. With ``dead_man``, the dead-man buttons of profiles count.
     """
 
     sources: Tuple[Source, ...]
@@ -63,7 +63,7 @@ class MuxConfig:
     dead_man: bool = True
 
     def without_dead_man(self) -> 'MuxConfig':
-        """Return the same configuration with no dead-man buttons."""
+        """Return the same configuration without dead-man buttons."""
         return replace(self, dead_man=False, sources=tuple(
             source if source.profile is None else
             replace(source, profile=source.profile.without_dead_man())
@@ -71,9 +71,9 @@ class MuxConfig:
 
 
 def parse_mux_config(text: str, origin: str, read_profile: ReadProfile) -> MuxConfig:
-    """Return the :class:`MuxConfig` that a YAML text describes.
+    """Parse a :class:`MuxConfig` from a YAML text.
 
-    :param read_profile: function from a profile's name to (origin, text); may raise OSError
+    :param read_profile: maps a profile's name to (origin, text); may raise OSError
     :raises ConfigError: names the file and the wrong key
     """
     section = parse_yaml(text, origin)
@@ -138,9 +138,9 @@ def _source(row: Section, read_profile: ReadProfile) -> Source:
         raise row.error('label', 'has {} characters; at most {} can be shown'.format(
             len(label), LONGEST_LABEL))
     holds = row.flag('holds', False)
-    # A held value also expires: joy_node says nothing when its pad is pulled out.
+    # A held value also expires: joy_node publishes nothing when its pad is unplugged.
     timeout_s = row.number('timeout_s', 0.05, 60.0 if holds else 2.0, 5.0 if holds else 0.5)
-    # Every source is, by now; files of before may say so.
+    # Obsolete, since every source is exclusive now; older files may contain it.
     row.flag('exclusive', True)
     source = Source(name, label, topic, profile, timeout_s, service, kind, holds)
     row.close()

@@ -1,13 +1,13 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Which velocities of robots on a task the mux passes on."""
+"""Decision on whether the mux passes on the velocities of robots on a task."""
 import collections
 import math
 from typing import Counter, Optional, Sequence, Tuple
 
 from mhri.base.names import MAX_LENGTH, name_problem
 
-MOST_ROBOTS = 100
+MAX_ROBOTS = 100
 
 PASS, PASS_ZEROS, NOTHING = 'pass', 'pass_zeros', 'nothing'
 
@@ -18,13 +18,13 @@ def team_problem(robots: Sequence[str],
 
     :param robots: names
     :param twists: for each, the six numbers of its Twist [m/s, rad/s]
-    :returns: (the word under which it is counted, a sentence)
+    :returns: (the key of its counter, a sentence)
     """
     if len(robots) != len(twists):
         return 'lengths', '{} robots and {} twists: give one to each'.format(
             len(robots), len(twists))
-    if len(robots) > MOST_ROBOTS:
-        return 'too_many', '{} robots; at most {}'.format(len(robots), MOST_ROBOTS)
+    if len(robots) > MAX_ROBOTS:
+        return 'too_many', '{} robots; at most {}'.format(len(robots), MAX_ROBOTS)
     for name in robots:
         problem = name_problem(name)
         if problem:
@@ -46,12 +46,13 @@ class TaskRelay:
 
     def judge(self, robots: Sequence[str], twists: Sequence[Sequence[float]], stopped: bool,
               enabled: bool, is_new: bool) -> Tuple[str, str]:
-        """Return (PASS, PASS_ZEROS or NOTHING, what is wrong with the message or '').
+        """Return (PASS, PASS_ZEROS or NOTHING, the problem of the message or '').
 
-        :param stopped: stop-all is in force; nothing is passed on, and the gates send the zeros
-        :param enabled: the enabling pedal is pressed, or there is none; releasing it stops once
-            what moved
-        :param is_new: newer than 0.25 s
+        :param stopped: whether stop-all is in force; then nothing is passed on, since the robots
+            have got their zeros
+        :param enabled: whether the enabling pedal is pressed or does not exist; after its release
+            moving robots get zeros once
+        :param is_new: whether the message is newer than 0.25 s
         """
         problem = team_problem(robots, twists)
         if problem:

@@ -1,3 +1,3 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The event list: what has changed, in words, and the tones that go with it."""
+"""The event list: descriptions of changes, and their tones."""

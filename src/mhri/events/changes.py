@@ -1,62 +1,67 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What has changed from one view of the screen to the next, as an operator would put it.
+"""Changes from one view of the screen to the next, in the operator's terms.
 
-A state that flaps is reported once: it must last a while before it counts, the longer the less
+A flapping state is reported once: it must last a while before it counts, the longer the less
 urgent it is.
 """
-from typing import Callable, Dict, Generic, Iterator, List, NamedTuple, Optional, Tuple, TypeVar
+from math import isfinite
+from typing import Callable, Dict, Generic, Iterator, List, Optional, Tuple, TypeVar
 
+from mhri.base.accessories import Accessory, READOUT
 from mhri.base.battery import battery_level, FINE, FLAT, LOW
+from mhri.base.reasons import DRIVE_SILENT, HARDWARE_STOP, Reason
 from mhri.base.views import (
-    GONE, LIVE, PanelView, PROOF_NOT_CONFIRMED, PROOF_STOPPED, RobotView, ROS_CONNECTED,
-    ROS_CUT_OFF, ROS_NO_MASTER, SILENT, UNANSWERED, WAITING)
-from mhri.driving.motor_power import CUT, CUT_SENT, FAILED, UNTOUCHED
+    Change, GONE, LIVE, PROOF_NOT_CONFIRMED, PROOF_STOPPED, RobotView, ROS_CONNECTED, ROS_CUT_OFF,
+    ROS_NO_MASTER, ScreenView, SILENT, WAITING)
+from mhri.driving.motor_power import CUT, CUT_ASKED, CUT_SENT, FAILED, ON, RESTORE_ASKED
 from mhri.recording.recording import ENDED, FAILED as NOT_RECORDED, RECORDING, RecordingStatus
 from mhri.robots.link_quality import link_warning
 
-# How long [s] something must last before it is reported. A loss is reported at once.
+# Time for which a state must last before it is reported [s]; a loss is reported at once.
 BACK_S = 2.0
 BAD_LINK_S = 2.0
 GOOD_LINK_S = 5.0
 GUARD_S = 2.0
+WITHIN_S = 1.0
 SERVICE_S = 1.0
 SETTLED_S = 1.0
 
 _T = TypeVar('_T')
-# Kind and words.
-_Told = Iterator[Tuple[str, str]]
-# How an answer of the drive service begins if it refuses.
-_REFUSALS = ('not ', 'motor power unchanged')
-_FAILED = FAILED.format('')
+# (kind, text).
+_Changes = Iterator[Tuple[str, str]]
+_POWER = {
+    CUT: ('power.cut', 'motor power cut'),
+    CUT_SENT: ('power.cut', 'motor power cut: sent to the robot, which cannot confirm it'),
+    FAILED: ('power.failed', 'motor power not changed: the log says why'),
+    ON: ('power.back', 'motor power restored')}
 _BATTERY_WORDS = {LOW: 'battery {:.0f} %: charge it soon', FLAT: 'battery {:.0f} %: charge it now',
                   FINE: 'battery {:.0f} % again'}
 
 
-class Change(NamedTuple):
-    """One thing that has changed: its robot ('' for all), kind and sentence.
-
-    The kind is "subject.what", e.g. ``link.lost``; the last change of a subject holds. ``again``
-    is true if it only adds to what was already reported.
-    """
-
-    robot: str
-    kind: str
-    text: str
-    again: bool = False
+def _readout_words(spec: Accessory, value: float, beyond: bool) -> str:
+    """Return what a sensor measures, and its limit: "gas 62 ppm, above 50", "bumper left"."""
+    words = '{} {}'.format(spec.label, spec.reading(value))
+    if not beyond:
+        return spec.label + ' clear again' if spec.bits else words + ' again'
+    if spec.bits:
+        return words
+    above = spec.warn_above is not None and value > spec.warn_above
+    return '{}, {} {:g}'.format(words, *(('above', spec.warn_above) if above
+                                         else ('below', spec.warn_below)))
 
 
 class Held(Generic[_T]):
-    """A value that counts once it has held for a while; time is monotonic seconds."""
+    """A debounced value, which counts once it has held for a while; times are [s, monotonic]."""
 
     def __init__(self, value: _T) -> None:
         self.value = value
-        #: since when it has been as it is now [s]
+        #: time of the last change of the raw value [s]
         self.since = 0.0
         self._next = value
 
     def take(self, value: _T, hold_s: float, now: float) -> bool:
-        """Take in the present value; return whether it counts from now on and did not before."""
+        """Handle the raw value; return whether the debounced value changes to it now."""
         if value != self._next:
             self._next, self.since = value, now
         if value == self.value or now - self.since < hold_s:
@@ -66,7 +71,7 @@ class Held(Generic[_T]):
 
 
 class RobotChanges:
-    """What changes about one robot."""
+    """Changes of one robot."""
 
     def __init__(self, name: str) -> None:
         self._name = name
@@ -79,28 +84,32 @@ class RobotChanges:
         self._guarded = Held(False)
         self._guard_lost = False
         self._battery = FINE
-        self._power = UNTOUCHED
+        self._power = ON
         self._pressed = False
+        self._beyond: Dict[str, Held[bool]] = {}
+        self._choices: Dict[str, str] = {}
 
-    def see(self, view: RobotView, answers: bool, now: float) -> List[Change]:
-        """Return what has changed since the last view.
+    def update(self, view: RobotView, answers: bool, now: float) -> List[Change]:
+        """Return the changes since the last view.
 
-        :param answers: whether the gates are heard; without them guard and power are unknown
+        :param answers: whether the drive service answers; else guard and power are unknown
         """
-        told = list(self._see_link(view, now))
-        found = [*self._see_driving(view), *self._see_battery(view), *self._see_switch(view),
-                 *self._see_control(view)]
+        changes = list(self._link_changes(view, now))
+        found = [*self._driving_changes(view), *self._battery_changes(view),
+                 *self._switch_changes(view), *self._control_changes(view)]
         if view.link == LIVE:
-            found += self._see_quality(view, now)
+            found += self._quality_changes(view, now)
         if answers:
-            found += self._see_power(view)
+            found += self._power_changes(view)
             if view.link == LIVE:
-                found += self._see_guard(view, now)
+                found += self._guard_changes(view, now)
         self._old = view
-        return told + [Change(self._name, kind, text) for kind, text in found]
+        changes += [Change(self._name, kind, text) for kind, text in found]
+        return changes + list(self._readout_changes(view, now)) + list(
+            self._accessory_changes(view))
 
-    def _see_link(self, view: RobotView, now: float) -> Iterator[Change]:
-        """Report found, silent, gone and back; a robot is back once it has stayed a while."""
+    def _link_changes(self, view: RobotView, now: float) -> Iterator[Change]:
+        """Report found, silent, gone and back; a robot is back once live for a while."""
         self._live.take(view.link == LIVE, BACK_S if self._link in (SILENT, GONE) else 0.0, now)
         if view.link == LIVE and self._link == WAITING:
             self._link = LIVE
@@ -113,24 +122,24 @@ class RobotChanges:
             yield self._lose(view, now)
 
     def _lose(self, view: RobotView, now: float) -> Change:
-        """Report a robot that is no longer heard."""
+        """Report a lost robot."""
         again = self._link == SILENT
         self._link = view.link
         if not again:
             self._lost_at = now
-            # A robot that is not heard gets zeros and may be unchecked by now: the state before
-            # counts, too.
+            # Include the previous state: a lost robot receives zeros and may already be
+            # deselected.
             self._lost_driven = any(seen.selected or seen.driven for seen in (view, self._old))
         kind, word = ('link.silent', 'silent') if view.link == SILENT else ('link.gone', 'gone')
         if self._lost_driven:
             kind, word = 'link.lost', 'still gone' if again else 'lost while driven'
         return Change(self._name, kind, word + (': ' + view.note if view.note else ''), again)
 
-    def _see_driving(self, view: RobotView) -> _Told:
-        """Report the check and the proof of a stop."""
+    def _driving_changes(self, view: RobotView) -> _Changes:
+        """Report selection, and the proof of a stop."""
         if view.selected != self._old.selected:
-            yield ('drive.checked', 'checked') if view.selected else \
-                ('drive.unchecked', 'unchecked')
+            yield ('drive.checked', 'selected') if view.selected else \
+                ('drive.unchecked', 'deselected')
         before = self._old.proof.state if self._old.proof else None
         if view.proof is not None and view.proof.state != before:
             if view.proof.state == PROOF_STOPPED:
@@ -138,51 +147,69 @@ class RobotChanges:
             elif view.proof.state == PROOF_NOT_CONFIRMED:
                 yield 'proof.doubtful', view.proof.text
 
-    def _see_control(self, view: RobotView) -> _Told:
-        """Report what the robot says of who has control, where several hosts are linked to it."""
+    def _control_changes(self, view: RobotView) -> _Changes:
+        """Report the host in control, if several are linked to the robot."""
         if view.said and view.said != self._old.said:
             yield 'linked.said', view.said
 
-    def _see_battery(self, view: RobotView) -> _Told:
-        """Report a battery that is low, flat, or charged again."""
+    def _battery_changes(self, view: RobotView) -> _Changes:
+        """Report a change of the battery's level."""
         level = battery_level(view.battery, self._battery)
         if level != self._battery and view.battery is not None:
             yield 'battery.' + level, _BATTERY_WORDS[level].format(100.0 * view.battery)
         self._battery = level
 
-    def _see_switch(self, view: RobotView) -> _Told:
+    def _readout_changes(self, view: RobotView, now: float) -> Iterator[Change]:
+        """Report a sensor beyond its limits at once, and back within them after a while."""
+        for sensor in view.accessories:
+            spec = sensor.spec
+            if spec.kind != READOUT or sensor.stands or not all(map(isfinite, sensor.value)):
+                continue
+            for value in sensor.value:
+                held = self._beyond.setdefault(spec.key, Held(False))
+                beyond = spec.warns(value)
+                if held.take(beyond, 0.0 if beyond else WITHIN_S, now):
+                    yield Change(self._name, 'readout.beyond' if beyond else 'readout.within',
+                                 _readout_words(spec, value, beyond),
+                                 data={'readout': spec.key, 'value': value, 'unit': spec.unit})
+
+    def _accessory_changes(self, view: RobotView) -> Iterator[Change]:
+        """Report another choice of an accessory; its first report is none."""
+        for accessory in view.accessories:
+            spec, choice = accessory.spec, accessory.choice
+            if not accessory.known or spec.kind == READOUT:
+                continue
+            before = self._choices.get(spec.key, choice)
+            self._choices[spec.key] = choice
+            if choice and choice != before:
+                yield Change(self._name, 'accessory.reported', 'reports: {} {}'.format(
+                    spec.label, choice.replace('_', ' ')), data={
+                        'key': spec.key, 'choice': choice})
+
+    def _switch_changes(self, view: RobotView) -> _Changes:
         """Report the robot's own emergency stop."""
         pressed = self._pressed if view.hardware_stop is None else view.hardware_stop
         if pressed != self._pressed:
-            yield ('hardware.pressed', 'its own emergency stop is pressed') if pressed else \
+            yield ('hardware.pressed', Reason(HARDWARE_STOP).what) if pressed else \
                 ('hardware.released', 'its own emergency stop is released')
         self._pressed = pressed
 
-    def _see_quality(self, view: RobotView, now: float) -> _Told:
+    def _quality_changes(self, view: RobotView, now: float) -> _Changes:
         """Report a link that is bad, or good again."""
         warning = link_warning(view.figures)
         if self._bad.take(bool(warning), BAD_LINK_S if warning else GOOD_LINK_S, now):
-            words = 'bad link: ' + warning.replace('bad link: ', '')
-            yield ('quality.bad', words) if warning else \
+            yield ('quality.bad', warning) if warning else \
                 ('quality.good', 'the link is good again')
 
-    def _see_power(self, view: RobotView) -> _Told:
-        """Report changes of its motor power once they are complete."""
-        before = self._power
-        if view.power.startswith(_FAILED) or view.power in (CUT, CUT_SENT, UNTOUCHED):
-            self._power = view.power
-        if self._power == before:
-            return
-        if view.power.startswith(_FAILED):
-            yield 'power.failed', 'motor power not changed: ' + view.power[len(_FAILED):]
-        elif view.power == UNTOUCHED:
-            yield 'power.back', 'motor power restored'
-        else:
-            yield 'power.cut', 'motor power cut' + (
-                '' if view.power == CUT else ': sent to the robot, which cannot confirm it')
+    def _power_changes(self, view: RobotView) -> _Changes:
+        """Report completed changes of the motor power."""
+        power = view.power if view.power in _POWER else ON
+        if view.power not in (CUT_ASKED, RESTORE_ASKED) and power != self._power:
+            self._power = power
+            yield _POWER[power]
 
-    def _see_guard(self, view: RobotView, now: float) -> _Told:
-        """Report a guard that has gone, or is back."""
+    def _guard_changes(self, view: RobotView, now: float) -> _Changes:
+        """Report a guard that is lost or back."""
         if not self._guarded.take(view.guarded, 0.0 if view.guarded else GUARD_S, now):
             return
         if not view.guarded:
@@ -193,7 +220,7 @@ class RobotChanges:
 
 
 class RecordingChanges:
-    """What happens to the recordings.
+    """Changes of the recordings.
 
     :param status_of: function that returns the :class:`RecordingStatus` of a robot
     """
@@ -202,83 +229,82 @@ class RecordingChanges:
         self._status_of = status_of
         self._old: Dict[str, RecordingStatus] = {}
 
-    def see(self, names: Tuple[str, ...]) -> List[Change]:
-        """Return what has changed; a robot that has left the list counts until its file is closed.
+    def update(self, names: Tuple[str, ...]) -> List[Change]:
+        """Return the changes, including those of removed robots until their files are closed.
 
         :param names: the robots in the list
         """
-        told: List[Change] = []
+        changes: List[Change] = []
         for name in dict.fromkeys((*names, *self._old)):
             status, old = self._status_of(name), self._old.get(name, RecordingStatus())
-            told += [Change(name, kind, text) for kind, text in self._tell(old, status)]
+            changes += [Change(name, kind, text) for kind, text in self._changes_of(old, status)]
             if name in names or status.state == RECORDING:
                 self._old[name] = status
             else:
                 self._old.pop(name, None)
-        return told
+        return changes
 
     @staticmethod
-    def _tell(old: RecordingStatus, status: RecordingStatus) -> _Told:
+    def _changes_of(old: RecordingStatus, status: RecordingStatus) -> _Changes:
         """Report start, end and trouble."""
         if status.state == NOT_RECORDED:
             if (old.state, old.note) != (status.state, status.note):
                 yield 'recording.failed', 'not recorded: ' + status.note
         elif status.state == ENDED != old.state:
-            yield 'recording.ended', status.note or 'recording ended: ' + status.path
+            yield 'recording.ended', status.words or 'recording ended: ' + status.path
         elif status.state == RECORDING:
             if old.state != RECORDING:
                 yield 'recording.begun', 'recording to ' + status.path if status.path \
                     else 'recording'
             if status.attention and not (old.attention and old.state == RECORDING):
-                yield 'recording.warning', 'recording: ' + status.note
+                yield 'recording.warning', 'recording: ' + status.words
 
 
 class ScreenChanges:
-    """What changes about the whole screen and everything on it.
+    """Changes of the whole screen and everything on it.
 
     :param status_of: as for :class:`RecordingChanges`
     """
 
     def __init__(self, status_of: Callable[[str], RecordingStatus]) -> None:
-        self._old: Optional[PanelView] = None
+        self._old: Optional[ScreenView] = None
         self._robots: Dict[str, RobotChanges] = {}
         self._recordings = RecordingChanges(status_of)
         self._mode: Optional[str] = None
         self._master = True
-        self._mux = Held(True)
-        self._gates = Held(True)
-        self._advice = Held('')
+        self._drive = Held(True)
+        self._advice: Held[Optional[Reason]] = Held(None)
         self._limits: Optional[Held[Tuple[float, float]]] = None
 
-    def see(self, view: PanelView, now: float) -> List[Change]:
-        """Return what has changed since the last view, in the order in which to report it.
+    def update(self, view: ScreenView, now: float) -> List[Change]:
+        """Return the changes since the last view, in the order to report them.
 
-        :param now: seconds of a clock that never goes back
+        :param now: time [s, monotonic]
         """
-        old = self._old or PanelView(ros=view.ros)
-        told = [Change('', kind, text) for kind, text in (
-            *self._see_ros(old, view), *self._see_services(view, now),
-            *self._see_driver(old, view), *self._see_source(view, now))]
-        told += self._see_list(view, now)
-        told += self._recordings.see(tuple(robot.name for robot in view.robots))
+        old = self._old or ScreenView(ros=view.ros)
+        changes = [Change('', kind, text) for kind, text in (
+            *self._ros_changes(old, view), *self._services_changes(view, now),
+            *self._driver_changes(old, view), *self._source_changes(view, now))]
+        changes += self._list_changes(view, now)
+        changes += self._recordings.update(tuple(robot.name for robot in view.robots))
         self._old = view
-        return told
+        return changes
 
-    def _see_list(self, view: PanelView, now: float) -> Iterator[Change]:
-        """Report robots that come and go, and what changes about each."""
+    def _list_changes(self, view: ScreenView, now: float) -> Iterator[Change]:
+        """Report added and removed robots, and the changes of each robot."""
         names = {robot.name for robot in view.robots}
         for name in [name for name in self._robots if name not in names]:
             del self._robots[name]
-            yield Change(name, 'robot.removed', 'taken off the list')
+            yield Change(name, 'robot.removed', 'removed from the list')
         for robot in view.robots:
             if robot.name not in self._robots:
                 self._robots[robot.name] = RobotChanges(robot.name)
                 if self._old is not None:
                     yield Change(robot.name, 'robot.added', 'added to the list')
-            yield from self._robots[robot.name].see(robot, view.answers, now)
+            yield from self._robots[robot.name].update(robot, view.answers, now)
 
-    def _see_ros(self, old: PanelView, view: PanelView) -> _Told:
-        """Report the master, and this screen's own end."""
+    def _ros_changes(self, old: ScreenView, view: ScreenView) -> _Changes:
+        """Report loss and return of the master, and the disconnection of this screen."""
         if view.ros == ROS_CUT_OFF != old.ros:
             yield 'screen.cut_off', 'this screen is cut off and shows nothing new: restart it'
         elif view.ros == ROS_NO_MASTER and self._master:
@@ -288,31 +314,25 @@ class ScreenChanges:
             self._master = True
             yield 'master.back', 'the ROS master is back'
 
-    def _see_services(self, view: PanelView, now: float) -> _Told:
-        """Report mux and gates that fall silent or come back."""
-        if view.ros != ROS_CONNECTED:
-            return
-        if self._mux.take(view.mode is not None, SERVICE_S, now):
-            yield ('mux.back', 'what decides who drives is running again') if self._mux.value else \
-                ('mux.silent', 'what decides who drives is not running')
-        if self._gates.take(view.answers, SERVICE_S, now):
-            yield ('gates.back', 'the drive service answers again') if view.answers else \
-                ('gates.silent', UNANSWERED + ': no robot can be driven')
+    def _services_changes(self, view: ScreenView, now: float) -> _Changes:
+        """Report loss and return of the drive service."""
+        if view.ros == ROS_CONNECTED and self._drive.take(view.answers, SERVICE_S, now):
+            yield ('mux.back', 'the drive service answers again') if view.answers else \
+                ('mux.silent', Reason(DRIVE_SILENT).sentence)
 
-    def _see_driver(self, old: PanelView, view: PanelView) -> _Told:
-        """Report stop-all, who drives, and what was refused."""
+    def _driver_changes(self, old: ScreenView, view: ScreenView) -> _Changes:
+        """Report STOP ALL, changes of control, and refused requests."""
         if view.stop_all != old.stop_all:
             yield ('stop.engaged', 'STOP ALL') if view.stop_all else \
                 ('stop.released', 'STOP ALL released')
         if view.control.ours != old.control.ours:
             yield ('control.taken', 'this screen drives now') if view.control.ours else \
-                ('control.lost', '{} drives now: this screen looks on'.format(
-                    view.control.who or 'somebody else'))
-        if view.stop_note != old.stop_note and view.stop_note.lower().startswith(_REFUSALS):
+                ('control.lost', 'read-only: {} is in control'.format(view.control.words))
+        if view.stop_note != old.stop_note and view.stop_refused:
             yield 'request.refused', view.stop_note
 
-    def _see_source(self, view: PanelView, now: float) -> _Told:
-        """Report a new source, one that cannot drive, and a new speed limit."""
+    def _source_changes(self, view: ScreenView, now: float) -> _Changes:
+        """Report a new source, a source that cannot drive, and a new speed limit."""
         if view.mode is None:
             return
         if self._mode not in (None, view.mode):
@@ -320,8 +340,8 @@ class ScreenChanges:
                 dict(view.sources).get(view.mode, view.mode))
         self._mode = view.mode
         if self._advice.take(view.advice, SETTLED_S, now):
-            yield ('source.trouble', view.advice) if view.advice else \
-                ('source.fine', 'what drives is heard again')
+            yield ('source.trouble', view.advice.sentence) if view.advice else \
+                ('source.fine', 'the active source sends again')
         if self._limits is None:
             self._limits = Held(view.limits)
         if self._limits.take(view.limits, SETTLED_S, now):

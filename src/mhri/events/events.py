@@ -1,29 +1,33 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The event list: what an operator wants to know afterwards, and which of it is still unseen.
+"""The event log: the newest events, and those that the operator has not seen yet.
 
-An event is plain data that anybody can keep (:meth:`Event.as_dict`). Events that repeat within a
-short time become one line with a count, in the place of the newest.
+An event is plain data, easy to store (:meth:`Event.as_dict`). Events that repeat within a short
+time become one line with a count, in the place of the newest.
 """
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from datetime import datetime
 import re
-from typing import Any, Callable, Dict, List, NamedTuple, Optional, Tuple
+from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Tuple
 
 from mhri.base.text import tidy_text
-from mhri.base.views import PanelView
-from mhri.events.changes import Change, ScreenChanges
+from mhri.base.views import Change, ScreenView
+from mhri.events.changes import ScreenChanges
 from mhri.recording.recording import RecordingStatus
 
-# Severities, least first.
+# Severities, in ascending order.
 CALM, ATTENTION, ALARM = 'calm', 'attention', 'alarm'
 SEVERITIES = (CALM, ATTENTION, ALARM)
-# The tones; the one for a robot lost while driven cannot be silenced.
+# The tones; the one for a robot lost while driven cannot be switched off.
 LOST_TONE, ATTENTION_TONE, CALM_TONE = 'lost', 'attention', 'calm'
 
+# The kind of a mark of the session; its data name it (``mark``), and its note (``note``).
+MARKED = 'session.mark'
+# A sensor is beyond its limit, or back; their data name it (``readout``).
+BEYOND, WITHIN = 'readout.beyond', 'readout.within'
 MOST = 2000
 REPEAT_S = 20.0
-_MOST_REMEMBERED = 500
+_MAX_REMEMBERED = 500
 _NUMBER = re.compile(r'\d+(\.\d+)?')
 
 #: {kind: (severity, tone or '')}; the kinds of :mod:`mhri.events.changes` and of notes
@@ -35,6 +39,7 @@ KINDS: Dict[str, Tuple[str, str]] = {
     'quality.bad': (ATTENTION, ATTENTION_TONE), 'quality.good': (CALM, ''),
     'battery.low': (ATTENTION, ATTENTION_TONE), 'battery.flat': (ALARM, ATTENTION_TONE),
     'battery.fine': (CALM, ''),
+    BEYOND: (ATTENTION, ATTENTION_TONE), WITHIN: (CALM, ''),
     'drive.checked': (CALM, ''), 'drive.unchecked': (CALM, ''),
     'stop.engaged': (ATTENTION, ATTENTION_TONE), 'stop.released': (CALM, ''),
     'proof.stopped': (CALM, ''), 'proof.doubtful': (ALARM, ATTENTION_TONE),
@@ -45,7 +50,7 @@ KINDS: Dict[str, Tuple[str, str]] = {
     'recording.begun': (CALM, ''), 'recording.ended': (CALM, ''),
     'recording.warning': (ATTENTION, ATTENTION_TONE),
     'recording.failed': (ATTENTION, ATTENTION_TONE),
-    'session.begun': (CALM, ''), 'session.ended': (CALM, ''), 'session.mark': (CALM, ''),
+    'session.begun': (CALM, ''), 'session.ended': (CALM, ''), MARKED: (CALM, ''),
     'session.trouble': (ATTENTION, ATTENTION_TONE),
     'drill.waits': (CALM, ''), 'drill.begun': (CALM, ''), 'drill.found': (CALM, CALM_TONE),
     'drill.ended': (CALM, CALM_TONE),
@@ -54,6 +59,8 @@ KINDS: Dict[str, Tuple[str, str]] = {
     'control.taken': (CALM, ''), 'control.lost': (ATTENTION, ATTENTION_TONE),
     'linked.said': (ATTENTION, ATTENTION_TONE),
     'request.refused': (ATTENTION, ATTENTION_TONE),
+    'accessory.used': (CALM, ''), 'accessory.refused': (ATTENTION, ''),
+    'accessory.reported': (CALM, ''),
     'task.begun': (CALM, ''), 'task.said': (CALM, ''), 'task.done': (CALM, CALM_TONE),
     'task.stopped': (CALM, ''), 'task.taken_over': (CALM, ''),
     'task.timeout': (ATTENTION, ATTENTION_TONE), 'task.blocked': (ATTENTION, ATTENTION_TONE),
@@ -62,7 +69,6 @@ KINDS: Dict[str, Tuple[str, str]] = {
     'tasks.silent': (ATTENTION, ATTENTION_TONE), 'tasks.back': (CALM, ''),
     'tasks.stranger': (ATTENTION, ''),
     'mux.silent': (ATTENTION, ATTENTION_TONE), 'mux.back': (CALM, CALM_TONE),
-    'gates.silent': (ATTENTION, ATTENTION_TONE), 'gates.back': (CALM, CALM_TONE),
     'master.lost': (ATTENTION, ATTENTION_TONE), 'master.back': (CALM, CALM_TONE),
     'screen.cut_off': (ALARM, ATTENTION_TONE), 'screen.note': (CALM, ''),
     'screen.remote': (CALM, ''), 'stick.let_go': (ATTENTION, ATTENTION_TONE),
@@ -74,10 +80,11 @@ KINDS: Dict[str, Tuple[str, str]] = {
 class Event:
     """One line of the event list.
 
-    ``number`` counts up from 1 and is never used twice. ``time_s`` is the wall time [s since 1970]
-    of the newest of ``count`` equal ones, the first of which was at ``since_s``; ``replaces`` is
-    the number of the line that stood for those before, 0 if there is none. ``robot`` is '' where
-    it is about everything. ``kind`` is a key of :data:`KINDS`, ``sound`` the tone to play now ('').
+    ``number`` counts up from 1 and is unique. ``time_s`` is the wall time [s since 1970] of the
+    newest of ``count`` equal events, ``since_s`` that of the first; ``replaces`` is the number of
+    the line of the earlier ones, 0 if none. ``robot`` is '' for events of the whole screen.
+    ``kind`` is a key of :data:`KINDS`, ``sound`` the tone to play now or '', ``data`` that of its
+    :class:`mhri.base.views.Change`.
     """
 
     number: int
@@ -90,6 +97,7 @@ class Event:
     count: int = 1
     since_s: float = 0.0
     replaces: int = 0
+    data: Mapping[str, Any] = field(default_factory=dict)
 
     def as_dict(self) -> Dict[str, Any]:
         """Return the event as a dict of plain JSON values."""
@@ -97,22 +105,26 @@ class Event:
 
     @property
     def subject(self) -> str:
-        """What it is about: the newest of several events with one subject holds."""
-        return self.kind.partition('.')[0]
+        """The subject; an event supersedes earlier ones with the same subject.
+
+        Each readout is a subject of its own.
+        """
+        return self.kind.partition('.')[0] + str(self.data.get('readout', ''))
 
     @property
     def words(self) -> str:
-        """Text, and how often it was so: "silent: nothing for 1.2 s (3 times since 14:02:06)"."""
+        """The text with its count: "silent: nothing for 1.2 s (3 times since 14:02:06)"."""
         if self.count == 1:
             return self.text
         return '{} ({} times since {})'.format(self.text, self.count, clock_text(self.since_s))
 
 
 class Headline(NamedTuple):
-    """What the bottom line says about unseen events: words ('' for none) and a severity."""
+    """The bottom line's text on unseen events ('' if none), its severity, and its robot, if any."""
 
     text: str
     severity: str
+    robot: str = ''
 
 
 def clock_text(time_s: float) -> str:
@@ -125,10 +137,10 @@ def _no_recording(name: str) -> RecordingStatus:
 
 
 class EventLog:
-    """The newest events, and which of them nobody has looked at yet.
+    """The newest events, and the unseen ones among them.
 
     :param status_of: function that returns the :class:`RecordingStatus` of a robot by its name
-    :param most: how many events to keep; the oldest go first
+    :param most: maximum number of events; the oldest are dropped
     """
 
     def __init__(self, status_of: Callable[[str], RecordingStatus] = _no_recording,
@@ -137,60 +149,70 @@ class EventLog:
         self._most = most
         self._number = 0
         self._events: Dict[int, Event] = {}
-        # For what may repeat: when it was last reported (monotonic), and how.
-        self._told: Dict[Tuple[str, str, str], Tuple[float, Event]] = {}
+        # To detect repetitions: time of the last report [s, monotonic] and its event.
+        self._newest: Dict[Tuple[str, str, str], Tuple[float, Event]] = {}
         self._unseen: Dict[Tuple[str, str], Event] = {}
         self._unseen_count = 0
 
     @property
     def events(self) -> Tuple[Event, ...]:
-        """All events kept, the oldest first."""
+        """All events in the log, the oldest first."""
         return tuple(self._events.values())
 
     @property
     def unseen(self) -> int:
-        """How many events nobody has looked at yet."""
+        """The number of unseen events."""
         return self._unseen_count
 
-    def feed(self, view: PanelView, now_s: float, wall_s: float) -> List[Event]:
-        """Take in what the screen shows now; return the new events, the oldest first.
+    def feed(self, view: ScreenView, now_s: float, wall_s: float) -> List[Event]:
+        """Handle the screen's newest view; return the new events, the oldest first.
 
-        :param now_s: seconds of a clock that never goes back
-        :param wall_s: seconds since 1970
+        :param now_s: time [s, monotonic]
+        :param wall_s: time [s since 1970]
         """
-        return [self._tell(change, now_s, wall_s) for change in self._changes.see(view, now_s)]
+        return [self._append(change, now_s, wall_s) for change in self._changes.update(view, now_s)]
 
-    def note(self, kind: str, text: str, now_s: float, wall_s: float, robot: str = '') -> Event:
-        """Take in what no view says, and return it as an event.
+    def note(self, kind: str, text: str, now_s: float, wall_s: float, robot: str = '',
+             data: Optional[Mapping[str, Any]] = None) -> Event:
+        """Add and return an event that cannot be derived from views.
 
         :param kind: a key of :data:`KINDS`
-        :raises KeyError: it is not one
+        :param data: as in :class:`mhri.base.views.Change`
+        :raises KeyError: the kind is unknown
         """
-        return self._tell(Change(robot, kind, text), now_s, wall_s)
+        return self._append(Change(robot, kind, text, data=data or {}), now_s, wall_s)
 
-    def _tell(self, change: Change, now_s: float, wall_s: float) -> Event:
-        """Make the event of a change, and keep it."""
+    def _append(self, change: Change, now_s: float, wall_s: float) -> Event:
+        """Create the event of a change, and add it."""
         severity, sound = KINDS[change.kind]
         text = tidy_text(change.text)
-        key = (change.robot, change.kind, _NUMBER.sub('#', text))
-        told = self._told.get(key)
-        before = told[1] if told and now_s - told[0] <= REPEAT_S else None
+        mark = str(change.data.get('mark', ''))
+        key = (change.robot, change.kind,
+               mark or str(change.data.get('readout') or _NUMBER.sub('#', text)))
+        before = self._before(key, change, now_s)
         if change.again or before is not None and sound != LOST_TONE:
             sound = ''
         self._number += 1
         event = Event(
-            self._number, wall_s, change.robot, severity, change.kind, text, sound,
-            before.count + 1 if before else 1, before.since_s if before else wall_s,
-            before.number if before else 0)
+            self._number, before.time_s if before and mark else wall_s, change.robot, severity,
+            change.kind, text, sound, before.count + 1 if before and not mark else 1,
+            before.since_s if before else wall_s, before.number if before else 0, change.data)
         self._keep(event, before)
-        self._told[key] = now_s, event
-        if len(self._told) > _MOST_REMEMBERED:
-            self._told = {key: (at, event) for key, (at, event) in self._told.items()
-                          if now_s - at <= REPEAT_S}
+        self._newest[key] = now_s, event
+        if len(self._newest) > _MAX_REMEMBERED:
+            self._newest = {key: (at, event) for key, (at, event) in self._newest.items()
+                            if now_s - at <= REPEAT_S}
         return event
 
+    def _before(self, key: Tuple[str, str, str], change: Change, now_s: float) -> Optional[Event]:
+        """Return the event that a change repeats or, as the note of a mark, completes; or None."""
+        last = self._newest.get(key)
+        if last is None or 'mark' in change.data and 'note' not in change.data:
+            return None
+        return last[1] if 'mark' in change.data or now_s - last[0] <= REPEAT_S else None
+
     def _keep(self, event: Event, before: Optional[Event]) -> None:
-        """Put an event at the end, replacing the one that it repeats."""
+        """Append an event, and remove the one that it repeats."""
         if before is not None:
             self._events.pop(before.number, None)
         self._events[event.number] = event
@@ -199,16 +221,16 @@ class EventLog:
         self._unseen[(event.robot, event.subject)] = event
         self._unseen_count += 1
 
-    def see(self) -> None:
-        """Take in that the operator has looked at all of them."""
+    def mark_seen(self) -> None:
+        """Mark all events as seen."""
         self._unseen.clear()
         self._unseen_count = 0
 
     def headline(self) -> Headline:
-        """Return what to say about unseen events: the newest of the worst ones, by name.
+        """Return the headline of unseen events: the newest of the worst ones.
 
-        An event that is over (the robot is back) does not count as the worst. E.g. "bot3 lost while
-        driven 14:02:06 (2 more)"; "3 events" if none of them matters; '' for none.
+        An event that is over (the robot is back) is ignored. E.g. "bot3 lost while driven 14:02:06
+        (2 more)"; "3 events" if all are calm; '' if there are none.
         """
         open_ = [event for event in self._unseen.values() if event.severity != CALM]
         if not open_:
@@ -219,4 +241,4 @@ class EventLog:
         more = ' ({} more)'.format(len(open_) - 1) if len(open_) > 1 else ''
         return Headline('{} {} {}{}'.format(
             worst.robot, worst.text.partition(':')[0], clock_text(worst.time_s), more).strip(),
-            worst.severity)
+            worst.severity, worst.robot)

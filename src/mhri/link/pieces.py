@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Pictures in pieces, each of one packet: so that commands need not wait behind a whole picture.
+"""Splits pictures into pieces of one packet, so that commands do not wait for whole pictures.
 
-A picture in one message is many packets, all sent at once, and lost with any one of them. On a
-radio that loses packets a few pieces each have a spare one, their exclusive or, from which any one
-of them comes back: for the bytes of a picture sent twice go two or three pictures in that way.
+A picture in one message consists of many packets, sent in one burst and lost with any one of them.
+On a radio that loses packets each group of pieces has a spare, their exclusive or, which replaces
+any one of them. This is cheaper than sending each picture twice.
 """
 from dataclasses import dataclass
 import struct
@@ -12,15 +12,15 @@ from typing import Dict, List, Optional
 
 from mhri.link.frames import FrameError
 
-# With what is around it less than a packet of Ethernet [bytes].
+# Fits into an Ethernet packet with its headers [bytes].
 PIECE_BYTES = 1200
-MOST_PIECES = 4000
-# Number of the picture, place of the piece, how many spare ones there are, bytes, when taken.
+MAX_PIECES = 4000
+# Number of the picture, index of the piece, number of spares, size of the picture, its time.
 _HEAD = struct.Struct('>IHHId')
 
 
 def _xor(parts: List[bytes], size: int) -> bytes:
-    """Return the exclusive or of pieces, as if each had so many bytes."""
+    """Return the exclusive or of pieces, padded to a size."""
     found = 0
     for part in parts:
         found ^= int.from_bytes(part.ljust(size, b'\0'), 'big')
@@ -28,38 +28,38 @@ def _xor(parts: List[bytes], size: int) -> bytes:
 
 
 def _plan(length: int) -> int:
-    """Return the size of the pieces of a picture of so many bytes."""
+    """Return the size of the pieces of a picture by its length [bytes]."""
     return -(-length // -(-length // PIECE_BYTES))
 
 
 def split(number: int, stamp_s: float, body: bytes, group: int = 0) -> List[bytes]:
-    """Return the pieces of a picture; none of one that is too large.
+    """Return the pieces of a picture, [] if it is too large.
 
-    :param number: of the picture
+    :param number: number of the picture
     :param stamp_s: its time by the sender's clock [s]
-    :param group: so many pieces, at most, have a spare one; 0 for none
+    :param group: maximum number of pieces per spare; 0 for no spares
     """
-    if not 0 < len(body) <= MOST_PIECES * PIECE_BYTES:
+    if not 0 < len(body) <= MAX_PIECES * PIECE_BYTES:
         return []
     size = _plan(len(body))
     parts = [body[at:at + size] for at in range(0, len(body), size)]
     spares = -(-len(parts) // group) if group else 0
-    # Those of one group lie far apart: what a radio loses together is rarely of one.
+    # Pieces of a group are spread, since a radio often loses consecutive packets.
     parts += [_xor(parts[first::spares], size) for first in range(spares)]
     return [_HEAD.pack(number & 0xffffffff, place, spares, len(body), stamp_s) + part
             for place, part in enumerate(parts)]
 
 
 @dataclass(frozen=True)
-class Whole:
-    """A picture of which all pieces came."""
+class WholePicture:
+    """A complete picture."""
 
     stamp_s: float
     body: bytes
 
 
-class Gathered:
-    """Puts the newest picture of a stream together again."""
+class PieceAssembler:
+    """Reassembles the newest picture of a stream."""
 
     def __init__(self) -> None:
         self._number = -1
@@ -67,20 +67,20 @@ class Gathered:
         self._pieces: Dict[int, bytes] = {}
         self._done = False
 
-    def add(self, data: bytes) -> Optional[Whole]:
-        """Take in a piece; return the picture if it was the last one missing.
+    def add(self, data: bytes) -> Optional[WholePicture]:
+        """Handle a piece; return the picture once it is complete.
 
-        :raises FrameError: it is none
+        :raises FrameError: the piece is malformed
         """
         if len(data) <= _HEAD.size:
-            raise FrameError('no piece of a picture')
+            raise FrameError('not a piece of a picture')
         number, place, spares, length, stamp_s = _HEAD.unpack_from(data)
-        if not 0 < length <= MOST_PIECES * PIECE_BYTES:
-            raise FrameError('a piece that no picture has')
+        if not 0 < length <= MAX_PIECES * PIECE_BYTES:
+            raise FrameError('an impossible piece of a picture')
         size = _plan(length)
         count = -(-length // size)
         if spares > count or place >= count + spares or len(data) - _HEAD.size > size:
-            raise FrameError('a piece that no picture has')
+            raise FrameError('an impossible piece of a picture')
         if number != self._number:
             self._number, self._shape, self._pieces = number, (spares, length), {}
             self._done = False
@@ -94,10 +94,10 @@ class Gathered:
         if any(at not in self._pieces for at in range(count)):
             return None
         self._done = True
-        return Whole(stamp_s, b''.join(self._pieces[at] for at in range(count))[:length])
+        return WholePicture(stamp_s, b''.join(self._pieces[at] for at in range(count))[:length])
 
     def _mend(self, first: int, count: int, size: int) -> None:
-        """Find the one piece of a group that did not come."""
+        """Restore the one missing piece of a group."""
         group = list(range(first, count, self._shape[0])) + [count + first]
         missing = [at for at in group if at not in self._pieces]
         if len(missing) == 1:

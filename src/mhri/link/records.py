@@ -1,52 +1,54 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Class record: what the robot kept while the host was gone is fetched when the link is back.
+"""Fetches the robot's recordings of a link outage once the link is back.
 
-The robot keeps pieces, bags of some seconds. The host asks again and again, for a few parts of one
-piece at a time, beginning where it has got to; whatever is lost is asked for once more. So nothing
-has to be remembered on the robot, and an outage in the middle only takes time.
+The robot keeps pieces, bags of some seconds. The host requests the next part of a piece, of 64 kB
+at most, each time the one before has arrived; TLS carries them, so that nothing is lost but what
+was on its way when the connection broke. So the robot keeps no state of a transfer, and an outage
+only delays it.
 """
 from dataclasses import dataclass, replace
 import json
+import math
 import re
 import struct
 from typing import Collection, Dict, List, Optional, Tuple
-import zlib
 
 from mhri.link.frames import FrameError, read_rows
 from mhri.link.robot_claims import offer_problem
 from mhri.robots.figures import FETCHING_WORD
 
 RECORD = 'record'
-# What a host has kept for it on the robot: in a session alone, always, always and with pictures.
+# When the robot records for a host: during sessions; always; always, with pictures.
 IN_SESSIONS, STATES, PICTURES = KEEPS = 'session', 'states', 'pictures'
-# Streams of the link: what the host asks; what there is; a part of it.
+# Streams of the link: the host's requests; the robot's offer; a part of a piece.
 ASK, OFFER, PART = '_ask', '_offer', '_part'
 PIECE_S = 10.0
-PART_BYTES = 8192
-# So many parts are asked for at once, and fewer where they come over a longer time than this [s]:
-# for so long a pose or a command may wait behind them.
-MOST_PARTS, HOLD_S = 16, 0.03
-# Without an answer it is asked again, for less; after so many times as an answer takes, within [s].
-AGAIN_S, LEAST_AGAIN_S, ANSWERS = 1.0, 0.1, 4.0
-# Who has nothing to fetch says so every so often [s].
+# A part has up to so many steps; fewer if it takes longer than this [s] more than the shortest
+# answer, since poses and commands may wait behind it for that time.
+STEP_BYTES, MAX_STEPS, HOLD_S = 8192, 8, 0.03
+# Maximum number of steps in a request of an older mhri.
+_MAX_COUNT = 16
+# An unanswered request is repeated after this: by then the connection is another one [s].
+AGAIN_S = 5.0
+# Period of the requests while nothing has to be fetched [s].
 IDLE_S = 1.0
-# What a host asked a robot to keep is all there once it has nothing to offer for so long [s].
+# Fetching is complete once the robot has offered nothing for this long [s].
 ALL_THERE_S = 30.0
-MOST_PIECES, MOST_OFFERED = 2000, 200
+MAX_PIECES, MAX_OFFERED = 2000, 200
 _HEAD = struct.Struct('>IQ')
 _NAME = re.compile(r'(\d{6,10})_(\d{1,15})_(\d{1,9})\.bag\Z')
 
 
 @dataclass(frozen=True)
 class Piece:
-    """A bag that the robot has kept.
+    """A bag kept on the robot.
 
-    :param number: of this piece alone, and higher than those before it
-    :param begun_ms: by the robot's clock [ms since 1970]
-    :param lasts_ms: how long it is [ms]
-    :param size: its bytes
-    :param crc: of all of them (CRC-32)
+    :param number: unique, higher than those of earlier pieces
+    :param begun_ms: start by the robot's clock [ms since 1970]
+    :param lasts_ms: duration [ms]
+    :param size: size [bytes]
+    :param crc: CRC-32 of its bytes
     """
 
     number: int
@@ -57,22 +59,22 @@ class Piece:
 
     @property
     def name(self) -> str:
-        """Return its file's name."""
+        """The name of its file."""
         return '{:06d}_{}_{}.bag'.format(self.number, self.begun_ms, self.lasts_ms)
 
 
 def piece_of(name: str) -> Optional[Piece]:
-    """Return the piece that a file is, as far as its name says; None if it is none."""
+    """Return the piece with a file name, None for other files."""
     found = _NAME.match(name)
     return Piece(*map(int, found.groups())) if found else None
 
 
-def too_many(pieces: Collection[Piece], most_bytes: int) -> List[Piece]:
-    """Return the oldest pieces, which have to go so that the rest takes no more than that."""
+def too_many(pieces: Collection[Piece], max_bytes: int) -> List[Piece]:
+    """Return the oldest pieces, which have to be dropped to fit into a size."""
     gone: List[Piece] = []
     size = sum(piece.size for piece in pieces)
     for piece in sorted(pieces, key=lambda piece: piece.number):
-        if size <= most_bytes and len(pieces) - len(gone) <= MOST_PIECES:
+        if size <= max_bytes and len(pieces) - len(gone) <= MAX_PIECES:
             break
         gone.append(piece)
         size -= piece.size
@@ -81,14 +83,14 @@ def too_many(pieces: Collection[Piece], most_bytes: int) -> List[Piece]:
 
 @dataclass(frozen=True)
 class Ask:
-    """What the host says to the robot.
+    """A request from the host to the robot.
 
-    :param keep: keep what I miss from now on
-    :param have: numbers of pieces that came whole
-    :param number: of the piece that is wanted, -1 for none
-    :param offset: from which byte on
-    :param count: how many parts
-    :param pictures: keep pictures, too
+    :param keep: whether to record outages from now on
+    :param have: numbers of the pieces that are complete
+    :param number: number of the requested piece, -1 for none
+    :param offset: first byte requested
+    :param count: maximum size of the part, in steps
+    :param pictures: whether to record pictures, too
     """
 
     keep: bool = False
@@ -102,7 +104,7 @@ class Ask:
 def pack_ask(ask: Ask) -> bytes:
     """Return the bytes of an :class:`Ask`."""
     row = [ask.keep, ask.have, ask.number, ask.offset, ask.count]
-    # An older mhri on the robot knows five.
+    # An older mhri on the robot expects five elements.
     return json.dumps(row + [True] * ask.pictures).encode('ascii')
 
 
@@ -116,28 +118,28 @@ def unpack_ask(body: bytes) -> Ask:
     if (len(found) < 5 or [type(part) for part in more] not in ([], [bool])
             or type(found[0]) is not bool or not isinstance(found[1], list)
             or not all(type(part) is int for part in found[1] + found[2:5])
-            or found[3] < 0 or not 0 <= found[4] <= MOST_PARTS):
-        raise FrameError('no request for a recording')
+            or found[3] < 0 or not 0 <= found[4] <= _MAX_COUNT):
+        raise FrameError('not a request for a recording')
     return Ask(found[0], tuple(found[1]), found[2], found[3], found[4], True in more)
 
 
 def pack_offer(pieces: Collection[Piece]) -> bytes:
-    """Return the bytes of what there is to fetch, the oldest first."""
-    first = sorted(pieces, key=lambda piece: piece.number)[:MOST_OFFERED]
+    """Return the bytes of an offer of pieces, the oldest first."""
+    first = sorted(pieces, key=lambda piece: piece.number)[:MAX_OFFERED]
     return json.dumps([[piece.number, piece.begun_ms, piece.lasts_ms, piece.size, piece.crc]
                        for piece in first]).encode('ascii')
 
 
 def unpack_offer(body: bytes) -> List[Piece]:
-    """Return the pieces that bytes say.
+    """Return the pieces of an offer.
 
-    :raises FrameError: they say none
+    :raises FrameError: it is malformed, or too large
     """
     found = read_rows(body)
     problem = offer_problem(found)
     if problem:
         raise FrameError(problem)
-    return [Piece(*row) for row in found[:MOST_PIECES]]
+    return [Piece(*row) for row in found[:MAX_PIECES]]
 
 
 def pack_part(number: int, offset: int, data: bytes) -> bytes:
@@ -148,43 +150,41 @@ def pack_part(number: int, offset: int, data: bytes) -> bytes:
 def unpack_part(body: bytes) -> Tuple[int, int, bytes]:
     """Return (number of the piece, offset, bytes).
 
-    :raises FrameError: it is none
+    :raises FrameError: it is malformed
     """
     if len(body) <= _HEAD.size:
-        raise FrameError('no part of a recording')
+        raise FrameError('not a part of a recording')
     number, offset = _HEAD.unpack_from(body)
     return number, offset, body[_HEAD.size:]
 
 
 class Fetch:
-    """Decides what the host asks for next; times are [s] of a clock that never goes back.
+    """Decides what the host requests next; times are [s] of a monotonic clock.
 
-    :param got: {number: bytes that are there already} of pieces that came in part
-    :param done: pieces that came whole and wait for the rest
-    :param window: how many parts are asked for at first
-    :param asked: whether this host has asked the robot, in an earlier run, to keep something
+    :param done: complete pieces of an earlier run
+    :param asked: whether this host requested recordings in an earlier run
     """
 
-    def __init__(self, got: Optional[Dict[int, int]] = None, window: int = 1,
-                 done: Collection[Piece] = (), asked: bool = False) -> None:
+    def __init__(self, done: Collection[Piece] = (), asked: bool = False) -> None:
         self.keep = self.pictures = False
-        #: whether the robot may have something that this host asked it to keep; remember it
+        #: whether the robot may have recordings for this host; stored across restarts
         self.asked = asked
-        #: how many pieces the robot offers that this host never asked for
+        #: number of offered pieces that this host never requested
         self.unasked = 0
         self._empty_since: Optional[float] = None
-        self._got = dict(got or {})
+        # {number: received bytes} of incomplete pieces
+        self._got: Dict[int, int] = {}
         self._told = False
         self._offered: Dict[int, Piece] = {}
         self._done = {piece.number: piece for piece in done}
-        self._asked_at = self._heard_at = self._first_at = -1e9
-        self._until = 0
-        self._window = window
-        # Of the parts that were asked for last one is missing; how long an answer takes [s].
-        self._torn, self._answer_s = False, AGAIN_S
+        self._asked_at = -1e9
+        # Number and offset of the unanswered request; the shortest answer of this piece [s].
+        self._open: Optional[Tuple[int, int]] = None
+        self._least_s = math.inf
+        self._steps = 1
 
     def on_offer(self, pieces: Collection[Piece], now: float) -> None:
-        """Take in what there is to fetch; nothing, unless this host asked the robot to keep it."""
+        """Handle an offer; it is ignored unless this host requested recordings."""
         self.unasked = 0 if self.asked else len(pieces)
         self._offered = {piece.number: piece for piece in pieces} if self.asked else {}
         self._told = True
@@ -196,46 +196,40 @@ class Fetch:
             self.asked = False
 
     def on_part(self, number: int, offset: int, data: bytes, now: float) -> bool:
-        """Take in a part; return whether it is the next one, and to be written."""
-        piece, end = self.wanted(), offset + len(data)
-        if piece is None or number != piece.number or end > piece.size:
+        """Handle a part; return whether it is the next one, which has to be written."""
+        piece, end = self.next_piece(), offset + len(data)
+        if piece is None or number != piece.number or end > piece.size \
+                or offset != self._got.get(number, 0):
             return False
-        got = self._got.get(number, 0)
-        if offset != got:
-            # Behind the last one comes none of those that are missing.
-            self._torn = self._torn or got < offset and end >= self._until
-            return False
-        if self._first_at < self._asked_at:
-            self._first_at = now
-            self._answer_s += 0.2 * (now - self._asked_at - self._answer_s)
-        self._heard_at = now
         self._got[number] = end
-        if end >= self._until:
-            held = now - self._first_at > HOLD_S
-            self._window = max(1, self._window // 2) if held else min(MOST_PARTS, self._window + 1)
+        if self._open == (number, offset):
+            self._open, took_s = None, now - self._asked_at
+            self._least_s = min(self._least_s, took_s)
+            held = took_s - self._least_s > HOLD_S
+            self._steps = max(1, self._steps // 2) if held else min(MAX_STEPS, self._steps + 1)
         return True
 
-    def wanted(self) -> Optional[Piece]:
-        """Return the piece that is being fetched, None for none."""
+    def next_piece(self) -> Optional[Piece]:
+        """Return the piece being fetched, or None."""
         left = [piece for number, piece in self._offered.items() if number not in self._done]
         return min(left, key=lambda piece: piece.number) if left else None
 
     def whole(self) -> Optional[Piece]:
-        """Return the piece all bytes of which have come, to be checked."""
-        piece = self.wanted()
+        """Return the piece that is complete and has to be checked, or None."""
+        piece = self.next_piece()
         return piece if piece and self._got.get(piece.number, 0) >= piece.size else None
 
     def checked(self, piece: Piece, good: bool) -> None:
-        """Take in that a piece came whole, or has to be fetched once more."""
+        """Record that a piece is complete, or has to be fetched again."""
         self._got.pop(piece.number, None)
-        self._until = 0
+        self._open, self._least_s = None, math.inf
         if good:
             self._done[piece.number] = piece
 
     def ask(self, now: float) -> Optional[Ask]:
-        """Return what to ask now, None for nothing."""
+        """Return the request to send now, or None."""
         self.asked = self.asked or self.keep
-        piece = self.wanted()
+        piece = self.next_piece()
         base = Ask(self.keep, tuple(sorted(set(self._done) & set(self._offered))),
                    pictures=self.pictures)
         if piece is None:
@@ -243,29 +237,23 @@ class Fetch:
                 return None
             self._asked_at = now
             return base
-        got = self._got.get(piece.number, 0)
-        if got < self._until:
-            again_s = min(AGAIN_S, max(LEAST_AGAIN_S, ANSWERS * self._answer_s))
-            if not self._torn and now - max(self._asked_at, self._heard_at) < again_s:
-                return None
-            # What was lost was too much for the radio.
-            self._window = max(1, self._window // 2)
-            self._answer_s = min(AGAIN_S, self._answer_s * (1.0 if self._torn else 2.0))
-        self._asked_at, self._torn = now, False
-        self._until = min(piece.size, got + self._window * PART_BYTES)
-        return replace(base, number=piece.number, offset=got, count=self._window)
+        following = piece.number, self._got.get(piece.number, 0)
+        if self._open == following and now - self._asked_at < AGAIN_S:
+            return None
+        self._open, self._asked_at = following, now
+        return replace(base, number=following[0], offset=following[1], count=self._steps)
 
     def finished(self) -> List[Piece]:
-        """Return the pieces that came, once nothing is left to fetch; they count no more then."""
-        # The robot has to know that they came.
+        """Return the complete pieces once nothing is left to fetch, and forget them."""
+        # Wait until the robot has deleted them.
         if not self._told or self._offered or not self._done:
             return []
         done, self._done = sorted(self._done.values(), key=lambda piece: piece.number), {}
         return done
 
     def words(self, robot: str) -> str:
-        """Return how far it is, e.g. "fetching 38 of 120 s from bot1"; '' if nothing is fetched."""
-        piece = self.wanted()
+        """Return the progress, e.g. "fetching 38 of 120 s from bot1"; '' if nothing is fetched."""
+        piece = self.next_piece()
         if piece is None:
             return ''
         all_ms = sum(one.lasts_ms for one in {**self._offered, **self._done}.values())
@@ -273,8 +261,3 @@ class Fetch:
         done_ms += int(piece.lasts_ms * self._got.get(piece.number, 0) / max(1, piece.size))
         return '{} {:.0f} of {:.0f} s from {}'.format(
             FETCHING_WORD, 1e-3 * done_ms, 1e-3 * all_ms, robot)
-
-
-def crc_of(data: bytes, before: int = 0) -> int:
-    """Return the checksum of bytes, going on from that of those before them."""
-    return zlib.crc32(data, before)

@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a robot may say to the host over its link: names, numbers, frames, sizes, text.
+"""Validates a robot's claims over its link: names, numbers, frames, sizes, text.
 
-Who has a robot's key, or reaches a link without keys, says whatever it likes. So on the host's
-master a linked robot has topics and frames below its own name alone, of types that are known here,
-and its limits only fall. Parameters that the lab sets on the host's own master are the lab's.
+An attacker with a robot's key, or with access to a link without keys, can send anything. So on the
+host a linked robot only has topics and frames below its own name, of known types, and it can only
+lower its limits. Parameters set on the host's own master are not affected.
 """
 from dataclasses import replace
 import re
@@ -12,42 +12,42 @@ from typing import Collection, Dict, Mapping, Optional, Sequence, Tuple, Union
 
 from mhri.base.robot_hardware import HardwareStopSpec, MotorPowerSpec, SET_BOOL
 from mhri.base.robot_types import (
-    Limits, ODOMETRY_TYPES, resolve_robot_type, RobotType, TOPIC_KEYS, WINDOW_KEY)
+    common_limits, ODOMETRY_TYPES, resolve_robot_type, RobotType, TOPIC_KEYS, WINDOW_KEY)
 from mhri.base.text import tidy_text
 from mhri.link.carried import (
     FRAME_NAMES, GUARD_COMMAND, GUARD_ECHO, SHARED_FRAMES, TF, TF_STATIC, TF_TYPE)
 from mhri.link.renaming import packed_transforms, renamer, rewritten, transforms
 
 PARAMETERS = ('robot_type', 'robot_model', 'mhri')
-# In all, ever: each costs the host's master a registration.
+# Total number of topics: each costs a registration at the host's master.
 MAX_TOPICS = 100
-# Of one kind, such as its cameras; the gates take no more velocity topics either.
+# Per kind, such as cameras; the same as the mux's limit of velocity topics.
 MAX_TOPICS_EACH = 8
 MAX_LABEL = 40
-# A message of pictures or points, and any other [bytes].
+# Maximum sizes of picture and point messages, and of all others [bytes].
 MAX_PICTURE_BYTES, MAX_STATE_BYTES = 1 << 25, 1 << 22
-# A piece of a recording, all that are offered, and when one begins: before 2100 [bytes, ms].
+# Maxima of a piece of a recording, of a whole offer [bytes], and of its start: the year 2100 [ms].
 MAX_PIECE_BYTES, MAX_OFFERED_BYTES, MAX_BEGUN_MS = 1 << 32, 10 ** 12, 4102444800000
-# Its number and how long it is have to go into the name of its file.
+# Limits of number and duration, which are part of the file name.
 MAX_PIECE_NUMBER, MAX_LASTS_MS = 10 ** 10 - 1, 10 ** 9 - 1
 PICTURE_TYPES = ('sensor_msgs/Image', 'sensor_msgs/CompressedImage', 'sensor_msgs/PointCloud2')
 _GUARD = {GUARD_ECHO: 'geometry_msgs/TwistStamped',
           'mhri_guard/dropped': 'geometry_msgs/TwistStamped', 'mhri_guard/state': 'std_msgs/String'}
-# Their frames are known, or they have none.
+# Types with known frames, or without frames.
 _TYPES = frozenset(FRAME_NAMES) | frozenset(ODOMETRY_TYPES)
-# Nothing of mhri's own comes from a robot but what its guard says.
+# Of mhri's own topics only those of the guard may come from a robot.
 _OWN = ('mhri_guard', 'mhri_link')
 _TOPIC = re.compile(r'[A-Za-z][A-Za-z0-9_]*(/[A-Za-z0-9_]+)*\Z')
 _MAX_NAME = 250
 _WORD = re.compile(r'[A-Za-z0-9_-]{1,64}\Z')
-# Of the overrides these are taken as they are, once they are valid.
+# Overrides that are accepted unchanged if they are valid.
 _PLAIN = ('odometry_type', 'silent_after_s', 'radius_m', 'laser_x_m', 'lasers', 'no_return',
           'depth_x_m', 'depth_z_m')
 _Spec = Union[MotorPowerSpec, HardwareStopSpec]
 
 
 def is_offer(topic: object, kind: object) -> bool:
-    """Tell whether a robot may publish a topic of a ROS type on the host.
+    """Return whether a robot may publish a topic of a ROS type on the host.
 
     :param topic: relative to the robot's namespace, or ``/tf``, ``/tf_static``
     """
@@ -61,14 +61,14 @@ def is_offer(topic: object, kind: object) -> bool:
 
 
 def fits(kind: str, data: bytes) -> bool:
-    """Tell whether a message is not larger than one of its type can be."""
+    """Return whether the size of a message is plausible for its type."""
     return len(data) <= (MAX_PICTURE_BYTES if kind in PICTURE_TYPES else MAX_STATE_BYTES)
 
 
 def offer_problem(rows: Sequence[object]) -> str:
-    """Return what is wrong with the recordings that a robot offers, '' for nothing.
+    """Return the problem with the recordings that a robot offers, '' if valid.
 
-    :param rows: of each its number, begin [ms], length [ms], size [bytes] and checksum
+    :param rows: number, start [ms], duration [ms], size [bytes] and checksum of each
     """
     limits = (('number', MAX_PIECE_NUMBER), ('begin [ms]', MAX_BEGUN_MS),
               ('length [ms]', MAX_LASTS_MS), ('size [bytes]', MAX_PIECE_BYTES),
@@ -77,7 +77,7 @@ def offer_problem(rows: Sequence[object]) -> str:
     for row in rows:
         if not (isinstance(row, list) and len(row) == len(limits)
                 and all(type(part) is int and part >= 0 for part in row)):
-            return 'it offers a recording that none can be'
+            return 'it offers an invalid recording'
         for part, (what, most) in zip(row, limits):
             if part > most:
                 return 'it offers a recording whose {} is more than {}'.format(what, most)
@@ -88,9 +88,9 @@ def offer_problem(rows: Sequence[object]) -> str:
 
 
 def recorded_name(robot: str, topic: str, kind: str, carried: Collection[str]) -> str:
-    """Return the name on the host of a topic in a robot's recording, '' if it is not its own.
+    """Return the host's name of a topic in a robot's recording, '' if it is not allowed.
 
-    :param topic: as the recording has it: absolute, with whatever namespace the robot has there
+    :param topic: absolute name as recorded, in the robot's namespace on its own master
     :param carried: the topics of the robot, relative to its namespace
     """
     if topic in (TF, TF_STATIC):
@@ -98,15 +98,15 @@ def recorded_name(robot: str, topic: str, kind: str, carried: Collection[str]) -
     start = '/{}/'.format(robot)
     own = [name for name in carried if topic.endswith('/' + name)]
     name = max(own, key=len) if own else topic[len(start):] if topic.startswith(start) else ''
-    # What the host itself commanded is in there, too.
+    # The host's own commands are recorded, too.
     its = name == GUARD_COMMAND and kind == 'geometry_msgs/TwistStamped'
     return start + name if its or is_offer(name, kind) else ''
 
 
 class OwnFrames:
-    """Sees to it that a robot speaks of frames below its own name, and of shared ones as parents.
+    """Restricts a robot to frames below its own name, with shared frames only as parents.
 
-    :param shared: frames that are everybody's
+    :param shared: frames shared by all robots
     """
 
     def __init__(self, robot: str, shared: Tuple[str, ...] = SHARED_FRAMES) -> None:
@@ -114,11 +114,11 @@ class OwnFrames:
         self._own = robot.encode('ascii') + b'/'
 
     def of(self, topic: str, kind: str, data: bytes) -> bytes:
-        """Return a message with the names that its frames have on the host.
+        """Return a message with the host's names of its frames.
 
-        A transform of a shared frame is left out: it would move all robots.
+        Transforms of shared frames are dropped, since they would move all robots.
 
-        :raises ValueError: it is no message of that type
+        :raises ValueError: it is malformed
         """
         if topic in (TF, TF_STATIC):
             return packed_transforms([row for child, row in transforms(data, self._rename)
@@ -128,19 +128,19 @@ class OwnFrames:
 
 
 def own_topic(robot: str, topic: str) -> str:
-    """Return the name below a robot's own that a topic has on the host, relative to that."""
+    """Return the name of a topic on the host, relative to the robot's namespace."""
     start = '/{}/'.format(robot)
     return topic[len(start):] if topic.startswith(start) else topic.lstrip('/')
 
 
-def believed(robot: str, said: Mapping[str, object], types: Mapping[str, RobotType]
-             ) -> Tuple[Dict[str, object], str]:
-    """Return (parameters that a robot may have on the host, why some were left out or '').
+def accepted_claims(robot: str, said: Mapping[str, object], types: Mapping[str, RobotType]
+                    ) -> Tuple[Dict[str, object], str]:
+    """Return (accepted parameters of a robot, the reason for dropped ones or '').
 
-    Topics are below its own name, also where its type's file has absolute ones; limits are those of
-    its type and model, or lower; a window is one of an installed type.
+    Topics are below its own name, even if absolute in its type's file; limits are at most those of
+    its type and model; windows are those of installed types.
 
-    :param said: ``robot_type``, ``robot_model`` and ``mhri``, as the robot says them
+    :param said: ``robot_type``, ``robot_model`` and ``mhri`` as claimed by the robot
     :param types: {name: RobotType} of the host
     """
     found: Dict[str, object] = {
@@ -157,10 +157,10 @@ def believed(robot: str, said: Mapping[str, object], types: Mapping[str, RobotTy
         kept['lasers'] = overrides['lasers'][:MAX_TOPICS_EACH]
     kept.update(_topics(robot, kind, base))
     kept.update(_hardware(robot, kind, base, types))
-    low = Limits(min(kind.limits.linear_mps, base.limits.linear_mps),
-                 min(kind.limits.angular_rad_s, base.limits.angular_rad_s))
+    low = common_limits([kind.limits, base.limits])
     if low != base.limits:
         kept['limits'] = {'linear_mps': low.linear_mps, 'angular_rad_s': low.angular_rad_s}
+        kept['holonomic'] = low.holonomic
     if 'label' in overrides:
         kept['label'] = tidy_text(kind.label, MAX_LABEL)
     if kind.window != base.window:
@@ -171,7 +171,7 @@ def believed(robot: str, said: Mapping[str, object], types: Mapping[str, RobotTy
 
 
 def _left_out(robot: str, taken: RobotType, said: RobotType) -> str:
-    """Return what a robot has said and is not believed."""
+    """Describe the claims of a robot that are not accepted."""
     away = [topic for key in TOPIC_KEYS for topic in getattr(said, key)
             if topic.startswith('/') and not topic.startswith('/{}/'.format(robot))]
     words = ['{} is taken as one of its own'.format(topic) for topic in away[:3]]
@@ -205,7 +205,7 @@ def _hardware(robot: str, kind: RobotType, base: RobotType, types: Mapping[str, 
 
 
 def _parameter(spec: Optional[_Spec]) -> object:
-    """Return what a part of a robot type is called in its file."""
+    """Return a part of a robot type as a parameter, as in the type's file."""
     if spec is None:
         return 'none'
     if isinstance(spec, HardwareStopSpec):

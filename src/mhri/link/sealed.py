@@ -1,18 +1,18 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Sealed datagrams: what a link with keys sends so that a lost packet holds up none behind it.
+"""Sealed datagrams for links with keys: a lost packet does not delay those behind it.
 
-TLS repeats what is lost, and all that follows waits. So the ends that have let each other in by
-their certificates hand each other over TLS what seals datagrams (:meth:`Lane.offer`):
+TLS retransmits lost data, and all following data waits. So ends that have accepted each other's
+certificates exchange the secrets for sealed datagrams over TLS (:meth:`SealedChannel.offer`):
 
-- a number for this run of the end, new at each start and whenever its keys are read anew
-- a secret of 32 random bytes, made for that number of the other end and for nobody else
+- a number of this run of the end, new at each start and whenever its keys are read again
+- a secret of 32 random bytes, only for that run of the other end
 
 A datagram is a head (``ms``, version, 0, number of the receiver's run, count) and a body sealed by
 AES-256-GCM under the sender's secret, with the count as nonce and the head as associated data. The
-count begins with the secret and never comes twice, so no nonce does. What opens came from who got
-its secret over TLS, as it was; what came before, or is too late, is refused (:class:`Window`). A
-receiver that was started anew has another number, so nothing that was said to it before counts.
+count starts with the secret and never repeats, so nonces never repeat. A datagram that opens is
+unchanged, and from the end of the TLS connection; repeated and late ones are refused
+(:class:`ReplayWindow`). A restarted receiver has another number, so it refuses older datagrams.
 """
 import math
 import struct
@@ -21,35 +21,35 @@ from typing import Any, Callable, Optional, Tuple, Type
 from mhri.link.frames import FrameError
 
 VERSION = 1
-# The stream of offers, which go over TLS alone, and never in a datagram.
+# The stream of offers, only sent over TLS.
 OFFER = '_key'
 SECRET_BYTES = 32
-# With more in them datagrams would be too long [bytes].
-MOST_BYTES = 60000
-# Without a word over TLS nothing counts after so long: a certificate may have run out [s].
+# Maximum content of a datagram [bytes].
+MAX_BYTES = 60000
+# Datagrams are refused this long after the last offer over TLS: a certificate may have expired [s].
 LIFE_S = 600.0
-# So long after the other end said that it hears this one datagrams are used [s].
+# Datagrams are used for this time after the other end confirmed that it receives them [s].
 USE_S = 1.5
-# How far behind the newest one a datagram may come.
+# Maximum number of counts by which a datagram may be behind the newest one.
 LATE = 1024
 _MAGIC = b'ms'
 _HEAD = struct.Struct('>2sBxQQ')
 _OFFER = struct.Struct('>2sBxQQ{}s'.format(SECRET_BYTES))
 _TAG_BYTES = 16
-# Why a datagram is refused.
+# Reasons for refusing a datagram.
 GARBAGE, STRANGER, FORGED, REPLAYED = (
-    'what is no datagram of the link', 'a datagram for another run of the link',
-    'a datagram with another key', 'a datagram for the second time, or late')
+    'not a datagram of the link', 'a datagram for another run of the link',
+    'a datagram with another key', 'a repeated or late datagram')
 
 
 class SealError(FrameError):
-    """A datagram that does not count; the text is one of the reasons above."""
+    """A refused datagram; the text is one of the reasons above."""
 
 
 def run_of(packet: bytes) -> int:
-    """Return for whom a datagram is.
+    """Return the run that a datagram is addressed to.
 
-    :raises SealError: it is none
+    :raises SealError: it is malformed
     """
     if len(packet) < _HEAD.size + _TAG_BYTES:
         raise SealError(GARBAGE)
@@ -59,35 +59,36 @@ def run_of(packet: bytes) -> int:
     return int(run)
 
 
-class Window:
-    """Lets each count through once, and none that is far behind the newest (as RFC 4303, 3.4.3)."""
+class ReplayWindow:
+    """Accepts each count once, unless it is far behind the newest (like RFC 4303, 3.4.3)."""
 
     def __init__(self) -> None:
         self._newest = 0
-        # A bit for each count that came, the lowest for the newest.
+        # A bit for each received count, the lowest for the newest.
         self._came = 0
 
     def lets(self, count: int) -> bool:
-        """Tell whether a count is new; it is not noted."""
+        """Return whether a count is new, without recording it."""
         behind = self._newest - count
         return behind < 0 or behind < LATE and not self._came >> behind & 1
 
     def note(self, count: int) -> None:
-        """Note that a count came, in a datagram that opened."""
+        """Record the count of a datagram that opened."""
         ahead = count - self._newest
         if ahead > 0:
-            # Not shifted by what may be any number.
+            # Bound the shift, since a count may be arbitrarily large.
             self._came = (self._came << ahead if ahead < LATE else 0) & ((1 << LATE) - 1)
             self._newest = count
         self._came |= 1 << self._newest - count
 
 
-class Lane:
-    """Datagrams to and from one other end; times are [s] of a clock that never goes back.
+class SealedChannel:
+    """Seals and opens datagrams for one other end; times are [s] of a monotonic clock.
 
-    :param cipher: makes an AEAD of a secret, with ``encrypt`` and ``decrypt`` (nonce, data, beside)
-    :param random: returns so many random bytes
-    :param broken: what ``decrypt`` raises
+    :param cipher: creates an AEAD of a secret, with ``encrypt`` and ``decrypt`` (nonce, data,
+        associated data)
+    :param random: returns a number of random bytes
+    :param broken: the exception raised by ``decrypt``
     """
 
     def __init__(self, cipher: Callable[[bytes], Any], random: Callable[[int], bytes],
@@ -96,26 +97,26 @@ class Lane:
         self.forget()
 
     def forget(self) -> None:
-        """Begin again: nothing that was agreed on counts any more."""
+        """Reset the channel: discard all negotiated secrets."""
         self.run = int.from_bytes(self._random(8), 'big') or 1
         self._theirs, self._count = 0, 0
         self._own_secret = self._their_secret = bytes(SECRET_BYTES)
         self._seals: Optional[Any] = None
         self._opens: Optional[Any] = None
-        self._window = Window()
+        self._window = ReplayWindow()
         self._offered_at = self._heard_at = self._hears_at = -math.inf
 
     def offer(self) -> bytes:
-        """Return what the other end has to know, to be told over TLS again and again."""
+        """Return the offer to the other end, to be repeated over TLS."""
         return _OFFER.pack(_MAGIC, VERSION, self.run, self._theirs, self._own_secret)
 
     def on_offer(self, data: bytes, now: float) -> bool:
-        """Take in what the other end offers, as it came over TLS; tell whether it is news.
+        """Handle an offer of the other end, received over TLS; return whether it is new.
 
-        :raises FrameError: it is none
+        :raises FrameError: it is malformed
         """
         if len(data) != _OFFER.size or data[:3] != _MAGIC + bytes((VERSION,)):
-            raise FrameError('no key for datagrams')
+            raise FrameError('not an offer of keys for datagrams')
         _, _, run, for_run, secret = _OFFER.unpack(data)
         news: bool = run != self._theirs or for_run != self.run
         if run != self._theirs:
@@ -126,7 +127,7 @@ class Lane:
             self._offered_at = now
             if secret != self._their_secret:
                 self._their_secret, self._opens = secret, self._cipher(secret)
-                self._window = Window()
+                self._window = ReplayWindow()
                 news = True
         return news
 
@@ -134,17 +135,17 @@ class Lane:
         return now - self._offered_at < LIFE_S
 
     def silence_s(self, now: float) -> float:
-        """Return since when no datagram opened [s], infinite before the first."""
+        """Return the time since a datagram opened [s], infinite before the first."""
         return now - self._heard_at
 
     def used(self, now: float) -> bool:
-        """Tell whether datagrams pass both ways."""
+        """Return whether datagrams pass in both directions."""
         return self._lives(now) and now - self._hears_at < USE_S
 
     def seal(self, topic: str, data: bytes, now: float) -> Optional[bytes]:
         """Return the datagram of a message, None before the other end is known.
 
-        :param topic: '' with no data only to show that datagrams pass
+        :param topic: '' without data for a keepalive
         """
         if self._seals is None:
             return None
@@ -158,7 +159,7 @@ class Lane:
     def open(self, packet: bytes, now: float) -> Tuple[str, bytes]:
         """Return (topic, data) of a datagram for this run.
 
-        :raises SealError: it does not count
+        :raises SealError: the datagram is refused
         """
         run, count = run_of(packet), _HEAD.unpack_from(packet)[3]
         if run != self.run or self._opens is None or not self._lives(now):

@@ -1,26 +1,26 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Who of several robots takes which of several places, so that their ways do not cross."""
+"""Assigns robots to positions so that their paths do not cross."""
 import math
 from typing import List, Optional, Sequence, Tuple
 
 import numpy as np
 
-from mhri.base.mocap import Pose
+from mhri.base.geometry import Pose
 
-# The shortest ways together never cross; of those that are equally long the even ones are taken:
-# in a line nobody passes anybody.
+# The paths of minimum total length never cross; among equal totals the most even ones are chosen:
+# robots in a line do not pass each other.
 _EVEN_PER_M2 = 1e-4
 
 
 def assigned(costs: np.ndarray) -> List[int]:
-    """Return for each row of costs (n, m >= n) its column, all different, the sum the least.
+    """Return a column for each row of costs (n, m >= n), all different, with minimum sum.
 
     The Hungarian method with potentials, O(n^2 m), as in e-maxx ("Assignment problem").
     """
     rows, columns = costs.shape
     up, left = np.zeros(rows), np.zeros(columns + 1)
-    # Of each column its row; the last column is where the row that is being placed begins.
+    # The row of each column; the last column is the start of the row being assigned.
     row_of = np.full(columns + 1, -1)
     for row in range(rows):
         row_of[columns], here = row, columns
@@ -49,9 +49,9 @@ def assigned(costs: np.ndarray) -> List[int]:
 
 def shared_out(poses: Sequence[Optional[Pose]], places: Sequence[Tuple[float, float]]
                ) -> List[Optional[int]]:
-    """Return for each robot the number of its place, None for whom none is left.
+    """Return the index of the position of each robot, None if none is left.
 
-    :param poses: where the robots are, None if nobody knows: such a one takes any place
+    :param poses: poses of the robots, None if unknown: such a robot takes any position
     :param places: (x, y) [m]
     """
     ways = np.array([[0.0 if pose is None else math.hypot(x - pose.x_m, y - pose.y_m)

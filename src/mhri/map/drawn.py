@@ -1,23 +1,23 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What an operator has drawn on the map: marks and the fence; and how all of it is kept."""
+"""Marks and fence drawn by the operator, and their storage."""
 import math
 from typing import Dict, List, Mapping, Optional, Sequence, Tuple
 
 from mhri.base.config import ConfigError, Section
-from mhri.base.mocap import Pose
+from mhri.base.geometry import Pose
 from mhri.base.names import name_problem
 from mhri.base.plausible import can_be, PLACE
 
-MOST_MARKS, MOST_CORNERS, MOST_ROBOTS = 64, 200, 64
-LEAST_AREA_M2 = 0.01
+MAX_MARKS, MAX_CORNERS, MAX_ROBOTS = 64, 200, 64
+MIN_AREA_M2 = 0.01
 Corner = Tuple[float, float]
-# Of a robot that was placed by hand: origin of its odometry, its odometry then, when [s].
+# A robot placed by hand: origin of its odometry, its odometry then, time [s].
 Put = Tuple[Pose, Pose, float]
 
 
 def pose_problem(pose: Pose) -> str:
-    """Return why a pose cannot be on a map, '' if it can."""
+    """Return why a pose is impossible on a map, '' if it is possible."""
     if pose.is_finite() and can_be(PLACE, pose.x_m) and can_be(PLACE, pose.y_m) \
             and abs(pose.heading_rad) <= 1e3:
         return ''
@@ -33,20 +33,20 @@ class Drawn:
         self.fence: Tuple[Corner, ...] = ()
 
     def set_mark(self, name: str, pose: Optional[Pose]) -> str:
-        """Put a mark there, or None: take it away; return why that cannot be, '' if it is done."""
+        """Set a mark, or remove it (None); return the problem, '' on success."""
         if pose is None:
             return '' if self.marks.pop(name, None) is not None else \
                 'there is no mark {!r}'.format(name[:64])
         problem = name_problem(name) if name else 'a mark needs a name'
         problem = problem or pose_problem(pose)
-        if not problem and name not in self.marks and len(self.marks) >= MOST_MARKS:
-            problem = 'there are {} marks already: take one away first'.format(MOST_MARKS)
+        if not problem and name not in self.marks and len(self.marks) >= MAX_MARKS:
+            problem = 'there are {} marks already: remove one first'.format(MAX_MARKS)
         if not problem:
             self.marks[name] = pose
         return problem
 
     def set_fence(self, corners: Sequence[Corner]) -> str:
-        """Draw the fence, none without corners; return why that cannot be, '' if it is done."""
+        """Set the fence, or remove it (no corners); return the problem, '' on success."""
         problem = fence_problem(corners) if corners else ''
         if not problem:
             self.fence = tuple(corners)
@@ -54,19 +54,19 @@ class Drawn:
 
 
 def fence_problem(corners: Sequence[Corner]) -> str:
-    """Return why corners are no fence, '' if they are."""
-    if not 3 <= len(corners) <= MOST_CORNERS:
-        return 'a fence has 3 to {} corners, not {}'.format(MOST_CORNERS, len(corners))
+    """Return why corners do not form a valid fence, '' if they do."""
+    if not 3 <= len(corners) <= MAX_CORNERS:
+        return 'a fence has 3 to {} corners, not {}'.format(MAX_CORNERS, len(corners))
     for number, (x, y) in enumerate(corners, 1):
         if not (can_be(PLACE, x) and can_be(PLACE, y)):
             return 'corner {}: {}'.format(number, pose_problem(Pose(x, y, 0.0)))
     twice = math.fsum(one[0] * two[1] - two[0] * one[1]
                       for one, two in zip(corners, [*corners[1:], corners[0]]))
-    return 'a fence has to enclose something' if abs(twice) < 2.0 * LEAST_AREA_M2 else ''
+    return 'a fence has to enclose something' if abs(twice) < 2.0 * MIN_AREA_M2 else ''
 
 
 def kept_of(drawn: Drawn, hand: Mapping[str, Put]) -> Dict[str, object]:
-    """Return all that is kept as plain values, as a parameter has them; see :func:`read_kept`."""
+    """Return the stored values as plain data for a parameter; see :func:`read_kept`."""
     return {'marks': {name: _numbers(pose) for name, pose in drawn.marks.items()},
             'fence': [list(corner) for corner in drawn.fence],
             'hand': {name: {'origin': _numbers(put[0]), 'odometry': _numbers(put[1]),
@@ -74,9 +74,9 @@ def kept_of(drawn: Drawn, hand: Mapping[str, Put]) -> Dict[str, object]:
 
 
 def read_kept(value: object, origin: str) -> Tuple[Drawn, Dict[str, Put], List[ConfigError]]:
-    """Return (what was drawn, {robot: as the hand has put it}, what of it cannot be used).
+    """Return (the drawn items, {robot: its placement by hand}, errors).
 
-    :param origin: where the value comes from, for the errors
+    :param origin: source of the value, for the errors
     """
     drawn, hand, errors = Drawn(), {}, []
     try:
@@ -96,7 +96,7 @@ def read_kept(value: object, origin: str) -> Tuple[Drawn, Dict[str, Put], List[C
         drawn.set_fence([(row[0], row[1]) for row in corners if row])
     if problem:
         errors.append(ConfigError(origin, 'fence', problem))
-    for name, section in list(robots.items())[:MOST_ROBOTS]:
+    for name, section in list(robots.items())[:MAX_ROBOTS]:
         try:
             hand[name] = _put(name, section)
         except ConfigError as error:
@@ -120,7 +120,7 @@ def _numbers(pose: Pose) -> List[float]:
 
 
 def _row(row: object, count: int) -> Optional[List[float]]:
-    """Return a list of so many numbers, None if it is none."""
+    """Return a list of ``count`` numbers, None if it is invalid."""
     if not isinstance(row, list) or len(row) != count or not all(
             type(value) in (int, float) and abs(value) < 1e12 for value in row):
         return None

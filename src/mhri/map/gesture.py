@@ -1,38 +1,39 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the operator draws on the map, from press to release: a goal, a route, a fence, ..."""
+"""Drawing on the map, from press to release: a goal, a route, a fence, ..."""
 from dataclasses import dataclass
 import math
 from typing import List, Optional, Tuple
 
-from mhri.base.mocap import Pose
+from mhri.base.geometry import Pose
 
-# The tools; LOOK draws nothing: the map is dragged.
-LOOK, GOTO, ROUTE, FENCE, PLACE, MARK, LEADER = (
-    'look', 'goto', 'route', 'fence', 'place', 'mark', 'leader')
+# The tools; LOOK draws nothing: the map is dragged. CARRY has no button: a robot is dragged.
+LOOK, GOTO, ROUTE, FENCE, PLACE, MARK, LEADER, CARRY = (
+    'look', 'goto', 'route', 'fence', 'place', 'mark', 'leader', 'carry')
 TOOLS = (GOTO, ROUTE, FENCE, PLACE, MARK, LEADER)
 # Places with a heading, made by a drag; corners, made by clicks; a robot, chosen by a click.
 POSES, CORNERS = (GOTO, PLACE, MARK), (ROUTE, FENCE)
-_LEAST_CORNERS = {ROUTE: 1, FENCE: 3}
-MOST_CORNERS = 200
+_MIN_CORNERS = {ROUTE: 1, FENCE: 3}
+MAX_CORNERS = 200
 
-# What to do next, in words; {} is who it is for.
+# Instructions; {} is the robot. Before the colon: the action and the robot, also at the pointer.
 HINTS = {
     LOOK: '',
-    GOTO: 'Press where {} should go, drag to where it should look, let go to start. Esc cancels.',
-    ROUTE: 'Click the corners of the route of {}; Enter or a double click starts it, Esc cancels.',
-    FENCE: 'Click the corners of the fence; Enter or a double click sets it, Esc cancels.',
-    PLACE: 'Press where {} stands, drag to where it looks. Esc cancels.',
-    MARK: 'Click where the mark is; drag for a heading. Esc cancels.',
-    LEADER: 'Click the robot that {} should follow. Esc cancels.',
+    GOTO: 'Send {}: click where it should go; drag to set the heading. Esc ends.',
+    ROUTE: 'Route of {}: click its corners; Enter or a double click starts it. Esc ends.',
+    FENCE: 'Fence: click its corners; Enter or a double click sets it. Esc ends.',
+    PLACE: 'Place {}: press where it is, drag to set its heading. Esc ends.',
+    MARK: 'Mark: click where to set it; drag for a heading. Esc ends.',
+    LEADER: '{} follows: click the robot that it should follow. Esc ends.',
+    CARRY: 'Send {}: release where it should go; back on its mark, or Esc, ends.',
 }
 
 
 @dataclass(frozen=True)
 class Act:
-    """What was drawn: a tool, and its pose or its corners [m].
+    """A finished drawing: a tool, and its pose or its corners [m].
 
-    ``aimed`` is false where the heading was not drawn.
+    ``aimed`` is whether the heading was drawn.
     """
 
     tool: str
@@ -42,21 +43,23 @@ class Act:
 
 
 class Gesture:
-    """One tool in the hand; after each :class:`Act` it is put away.
+    """The tool in use; it is put away after each :class:`Act`.
 
-    Places are [m], in the frame of the map.
+    Positions are [m], in the frame of the map.
     """
 
     def __init__(self) -> None:
         self.tool = LOOK
+        #: where a dragged robot was, None without one
+        self.start: Optional[Tuple[float, float]] = None
         self._anchor: Optional[Tuple[float, float]] = None
         self._heading_rad: Optional[float] = None
         self._corners: List[Tuple[float, float]] = []
 
-    def take(self, tool: str) -> None:
-        """Take a tool into the hand, or LOOK: none; what was begun is dropped."""
+    def choose_tool(self, tool: str) -> None:
+        """Select a tool, LOOK to deselect; an unfinished drawing is discarded."""
         self.tool = tool
-        self._anchor = self._heading_rad = None
+        self.start = self._anchor = self._heading_rad = None
         self._corners = []
 
     @property
@@ -66,18 +69,27 @@ class Gesture:
 
     @property
     def pose(self) -> Optional[Pose]:
-        """The pose that is being drawn; its heading is NaN before the drag is long enough."""
+        """The pose being drawn; its heading is NaN until the drag is long enough."""
         if self._anchor is None:
             return None
         return Pose(*self._anchor, math.nan if self._heading_rad is None else self._heading_rad)
 
     def press(self, x_m: float, y_m: float) -> None:
-        """Begin a pose; a corner is made at the release."""
+        """Start a pose; corners are set on release."""
         if self.tool in POSES:
             self._anchor, self._heading_rad = (x_m, y_m), None
 
+    def carry(self, x_m: float, y_m: float) -> None:
+        """Start to drag a robot from its position: its goal is where the drag ends."""
+        self.choose_tool(CARRY)
+        self.start = (x_m, y_m)
+
     def drag(self, x_m: float, y_m: float, least_m: float) -> None:
-        """Turn the pose to a place at least so far from it [m]; nearer, it keeps its heading."""
+        """Turn the pose towards a position, or drag a robot there, unless it is too near [m]."""
+        if self.start is not None:
+            far = math.hypot(x_m - self.start[0], y_m - self.start[1]) >= least_m
+            self._anchor = (x_m, y_m) if far else None
+            return
         if self._anchor is None:
             return
         ahead, left = x_m - self._anchor[0], y_m - self._anchor[1]
@@ -85,39 +97,45 @@ class Gesture:
             self._heading_rad = math.atan2(left, ahead)
 
     def release(self, x_m: float, y_m: float, least_m: float) -> Optional[Act]:
-        """End a pose, or add a corner; return what is complete with it."""
-        if self.tool in POSES and self._anchor is not None:
+        """Finish a pose, or add a corner; return the act if it is complete.
+
+        A robot that is dragged back to its position stays: there is no act, and no tool.
+        """
+        if self.start is not None or self.tool in POSES and self._anchor is not None:
             self.drag(x_m, y_m, least_m)
+            if self._anchor is None:
+                self.choose_tool(LOOK)
+                return None
             act = Act(self.tool, Pose(*self._anchor, self._heading_rad or 0.0),
                       self._heading_rad is not None)
-            self.take(LOOK)
+            self.choose_tool(LOOK)
             return act
-        if self.tool in CORNERS and len(self._corners) < MOST_CORNERS:
+        if self.tool in CORNERS and len(self._corners) < MAX_CORNERS:
             # The second click of a double click is at the same corner.
             if not self._corners or math.hypot(
                     self._corners[-1][0] - x_m, self._corners[-1][1] - y_m) >= least_m:
                 self._corners.append((x_m, y_m))
         if self.tool == LEADER:
-            self.take(LOOK)
+            self.choose_tool(LOOK)
             return Act(LEADER, Pose(x_m, y_m, 0.0))
         return None
 
     def undo(self) -> None:
-        """Take the last corner back."""
+        """Remove the last corner."""
         if self._corners:
             self._corners.pop()
 
     def problem(self) -> str:
-        """Return why what is drawn cannot be ended yet, '' if it can."""
-        least = _LEAST_CORNERS.get(self.tool, 0)
+        """Return why the drawing cannot be finished yet, '' if it can."""
+        least = _MIN_CORNERS.get(self.tool, 0)
         if len(self._corners) >= least:
             return ''
         return 'a {} has {} corner{} or more'.format(self.tool, least, 's' if least > 1 else '')
 
     def finish(self) -> Optional[Act]:
-        """End a route or a fence; None if it has too few corners, see :meth:`problem`."""
+        """Finish a route or a fence; None if it has too few corners, see :meth:`problem`."""
         if self.tool not in CORNERS or self.problem():
             return None
         act = Act(self.tool, corners=tuple(self._corners))
-        self.take(LOOK)
+        self.choose_tool(LOOK)
         return act

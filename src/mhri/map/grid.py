@@ -1,6 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A map of cells, as ``nav_msgs/OccupancyGrid`` and the files of map_server have it."""
+"""A grid map, as in ``nav_msgs/OccupancyGrid`` and in the files of map_server.
+
+map_server itself is not packaged for Debian, one of the two supported systems.
+"""
 from dataclasses import dataclass
 import math
 import re
@@ -9,20 +12,20 @@ from typing import Callable, Optional, Sequence, Tuple, Union
 import numpy as np
 
 from mhri.base.config import parse_yaml, Section
-from mhri.base.mocap import Pose
+from mhri.base.geometry import out_of, Pose
 from mhri.base.plausible import can_be, PLACE
 
 UNKNOWN, FREE, OCCUPIED = -1, 0, 100
-# From here on a cell counts as something that stands there; map_server's own threshold.
+# Cells from this value on count as occupied, as in map_server.
 TAKEN_FROM = 65
-MOST_CELLS = 40_000_000
-# The kind, and two numbers behind spaces and comments.
+MAX_CELLS = 40_000_000
+# The magic number, then width and height after whitespace and comments.
 _PNM = re.compile(rb'P[1-6](?:\s+|#[^\n]*\n)+(\d{1,9})(?:\s+|#[^\n]*\n)+(\d{1,9})')
 TRINARY, SCALE, RAW = 'trinary', 'scale', 'raw'
 
 
 class GridError(ValueError):
-    """A map that cannot be; the message says why."""
+    """An impossible map; the message names the reason."""
 
 
 @dataclass(frozen=True)
@@ -43,16 +46,13 @@ class Grid:
         return (width * self.resolution_m, height * self.resolution_m)
 
     def taken(self) -> np.ndarray:
-        """Return the middles of the cells where something stands: (n, 2) in the map's frame [m]."""
+        """Return the centres of the occupied cells: (n, 2) in the map's frame [m]."""
         rows, columns = np.nonzero(self.cells >= TAKEN_FROM)
-        x, y = (np.stack((columns, rows)) + 0.5) * self.resolution_m
-        cos, sin = math.cos(self.origin.heading_rad), math.sin(self.origin.heading_rad)
-        return np.column_stack((self.origin.x_m + cos * x - sin * y,
-                                self.origin.y_m + sin * x + cos * y))
+        return out_of(self.origin, (np.column_stack((columns, rows)) + 0.5) * self.resolution_m)
 
 
 def size_problem(resolution_m: float, origin: Pose, width: int, height: int) -> Optional[str]:
-    """Return why a map of this size cannot be, None if it can.
+    """Return why a map of this size is impossible, None if it is possible.
 
     :param width: cells in a row
     :param height: rows
@@ -62,8 +62,8 @@ def size_problem(resolution_m: float, origin: Pose, width: int, height: int) -> 
     if not (origin.is_finite() and can_be(PLACE, origin.x_m) and can_be(PLACE, origin.y_m)):
         return 'a corner at x {:.3g}, y {:.3g}, turned by {:.3g}'.format(
             origin.x_m, origin.y_m, origin.heading_rad)
-    if width < 1 or height < 1 or width * height > MOST_CELLS:
-        return '{} x {} cells: expected 1 to {} of them'.format(width, height, MOST_CELLS)
+    if width < 1 or height < 1 or width * height > MAX_CELLS:
+        return '{} x {} cells: expected 1 to {} of them'.format(width, height, MAX_CELLS)
     return None
 
 
@@ -71,9 +71,9 @@ def grid_of(resolution_m: float, origin: Pose, width: int, height: int,
             data: Union[bytes, Sequence[int], np.ndarray]) -> Grid:
     """Return the :class:`Grid` of a message's fields.
 
-    :param data: one value for each cell, row by row from the bottom, or their bytes; what is no
-        occupancy counts as unknown
-    :raises GridError: they do not fit together, or no map is of this size
+    :param data: one value per cell, row by row from the bottom, or their bytes; invalid occupancies
+        count as unknown
+    :raises GridError: they are inconsistent, or the size is impossible
     """
     problem = size_problem(resolution_m, origin, width, height)
     if problem:
@@ -90,13 +90,13 @@ def grid_of(resolution_m: float, origin: Pose, width: int, height: int,
 def read_map(text: str, origin: str, load_image: Callable[[str], Optional[np.ndarray]]) -> Grid:
     """Return the :class:`Grid` of a YAML file of map_server (http://wiki.ros.org/map_server).
 
-    Keys that nobody knows are ignored, as map_server does: other programs write some.
+    Unknown keys are ignored, as in map_server, since other programs add their own.
 
     :param text: the file's text
     :param origin: its name, for errors
     :param load_image: function from the name of the picture in it to an array of 8 or 16
-        bits, (height, width) or (height, width, channels) with the alpha last, None where it cannot
-        be read
+        bits, (height, width) or (height, width, channels) with the alpha last, None if it is
+        unreadable
     :raises ConfigError: names the file, the key and the remedy
     """
     section = parse_yaml(text, origin)
@@ -123,7 +123,7 @@ def read_map(text: str, origin: str, load_image: Callable[[str], Optional[np.nda
 
 
 def picture_size(head: bytes) -> Optional[Tuple[int, int]]:
-    """Return (width, height) as the first 1,000 bytes of a PNG, PNM or BMP say, None for others."""
+    """Return (width, height) from the first 1,000 bytes of a PNG, PNM or BMP, None for others."""
     if head.startswith(b'\x89PNG\r\n\x1a\n') and len(head) >= 24:
         return (int.from_bytes(head[16:20], 'big'), int.from_bytes(head[20:24], 'big'))
     if head.startswith(b'BM') and len(head) >= 26:
@@ -151,12 +151,12 @@ def _negate(section: Section) -> bool:
 
 def _cells(picture: np.ndarray, negate: bool, mode: str, taken: float,
            free: float) -> np.ndarray:
-    """Return the cells of a picture, the top row first, as map_server's image_loader has them."""
+    """Return the cells of a picture, the top row first, as in map_server's image_loader."""
     colours, clear = picture, np.zeros(picture.shape[:2], dtype=bool)
     if picture.ndim == 3:
         if picture.shape[2] in (2, 4):
             clear = picture[:, :, -1] == 0
-            # With its alpha counted as a colour in trinary mode, as map_server does.
+            # In trinary mode alpha counts as a colour, as in map_server.
             colours = picture if mode == TRINARY else picture[:, :, :-1]
         colours = colours.mean(axis=2)
     shade = 255.0 - colours if negate else colours.astype(np.float32)

@@ -1,51 +1,36 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Where robots are placed in the frame of the map, and what that rests on.
+"""The places of robots in the frame of the map, and their sources.
 
-A robot's own odometry begins anywhere. Placed is a robot whose origin of odometry is known in the
-frame of the map: its pose there is that origin, composed with its odometry. By priority it rests on
-motion capture, on tf (``map`` to the frame of its odometry), or on the operator's hand.
+A robot's odometry starts anywhere. A robot is placed if the origin of its odometry is known in the
+frame of the map: its pose there is that origin, composed with its odometry. Sources by priority are
+motion capture, tf (``map`` to the frame of its odometry), and placing by hand.
 """
 from dataclasses import dataclass
 import math
 from typing import List, Optional, Tuple
 
-from mhri.base.mocap import Pose
+from mhri.base.geometry import composed, inverse, Pose
 
 NOT_PLACED, TF, MOTION_CAPTURE, HAND = '', 'tf', 'motion_capture', 'hand'
 WORDS = {TF: 'tf', MOTION_CAPTURE: 'motion capture', HAND: 'hand'}
-# A place that is older is no place [s]; one that is older than this has gone: the next one counts.
+# An older place is unusable [s]; beyond the second age its source is gone, and the next applies.
 OLD_S, GONE_S = 0.5, 5.0
-# Odometry that leaps further than this, and than a robot drives meanwhile, began anew.
+# Odometry has restarted if it jumps by more than this, and by more than a robot can drive.
 LEAP_M, LEAP_RAD, FASTEST_MPS, FASTEST_RAD_S = 0.5, 1.0, 1.0, 4.0
-# Nobody knows what happened to a robot in a silence of its odometry that is longer [s]; in the one
-# that a restart of this program makes, for longer.
+# After a longer silence of odometry the robot may have been moved [s]; a restart of this program
+# may take longer.
 GAP_S, RESTART_S = 5.0, 30.0
-# A place that moves by more against odometry is said [m], and the robot stands for so long [s].
+# A larger correction of a place is reported [m], and the robot stops for this time [s].
 CORRECTED_M, SETTLES_S = 1.0, 1.0
 REMEDY = 'place it by hand on the map'
 
 
-def composed(frame: Pose, pose: Pose) -> Pose:
-    """Return a pose, given in a frame, in that frame's own frame."""
-    cos, sin = math.cos(frame.heading_rad), math.sin(frame.heading_rad)
-    return Pose(frame.x_m + cos * pose.x_m - sin * pose.y_m,
-                frame.y_m + sin * pose.x_m + cos * pose.y_m,
-                math.remainder(frame.heading_rad + pose.heading_rad, 2.0 * math.pi))
-
-
-def inverse(pose: Pose) -> Pose:
-    """Return where the frame of a pose lies, seen from the pose."""
-    cos, sin = math.cos(pose.heading_rad), math.sin(pose.heading_rad)
-    return Pose(-cos * pose.x_m - sin * pose.y_m, sin * pose.x_m - cos * pose.y_m,
-                -pose.heading_rad)
-
-
 @dataclass(frozen=True)
 class Place:
-    """What a robot's place rests on, that in a sentence, and its age [s], NaN where it has none.
+    """The source of a robot's place, a sentence about it, and its age [s], NaN if it does not age.
 
-    ``odometry`` is the origin of its odometry in the frame of the map, None: it is not placed.
+    ``odometry`` is the origin of its odometry in the frame of the map, None if it is not placed.
     """
 
     by: str = NOT_PLACED
@@ -55,11 +40,11 @@ class Place:
 
     @property
     def is_fresh(self) -> bool:
-        """Tell whether it may be relied on now."""
+        """Return whether it is usable now."""
         return self.odometry is not None and not self.age_s > OLD_S
 
     def pose(self, odometry: Optional[Pose]) -> Optional[Pose]:
-        """Return the robot's pose in the frame of the map, None where that is not known."""
+        """Return the robot's pose in the frame of the map, None if unknown."""
         if self.odometry is None or odometry is None:
             return None
         return composed(self.odometry, odometry)
@@ -67,14 +52,14 @@ class Place:
 
 @dataclass(frozen=True)
 class Odometry:
-    """A pose by odometry, when it was heard, and its number at the publisher, None for none."""
+    """A pose by odometry, its time of receipt, and its number at the publisher or None."""
 
     pose: Pose
     at_s: float
     number: Optional[int] = None
 
     def problem(self, before: 'Odometry', gap_s: float) -> str:
-        """Return why it cannot go on from an earlier one, '' where it can."""
+        """Return why it does not continue an earlier one, '' if it does."""
         after_s = max(0.0, self.at_s - before.at_s)
         moved_m = math.hypot(self.pose.x_m - before.pose.x_m, self.pose.y_m - before.pose.y_m)
         turned = abs(math.remainder(self.pose.heading_rad - before.pose.heading_rad,
@@ -83,19 +68,19 @@ class Odometry:
                 or turned > LEAP_RAD + FASTEST_RAD_S * after_s:
             return 'its odometry jumped'
         if self.number is not None and before.number is not None and self.number < before.number:
-            return 'its odometry began anew'
+            return 'its odometry restarted'
         return 'its odometry was silent for {:.0f} s'.format(after_s) if after_s > gap_s else ''
 
 
 class RobotPlace:
-    """The place of one robot, from what is heard of it.
+    """The place of one robot, from all sources.
 
-    What the hand has placed is relative to odometry::
+    Placement by hand is relative to odometry::
 
-        state      put         odometry that cannot go on  take_back  resume
+        state      put         discontinuous odometry      take_back  resume
         not put    put         not put                     not put    put
-        put        put anew    lost                        not put    (as it is)
-        lost       put         lost                        not put    (as it is)
+        put        replaced    lost                        not put    unchanged
+        lost       put         lost                        not put    unchanged
 
     Times are those of one clock [s].
     """
@@ -103,7 +88,7 @@ class RobotPlace:
     def __init__(self) -> None:
         self.odometry: Optional[Odometry] = None
         self._gap_s = GAP_S
-        # When motion capture was heard last.
+        # Time of the last motion capture.
         self.seen_at: Optional[float] = None
         self._captured: Optional[Tuple[Pose, float]] = None
         self._tf: Optional[Tuple[Pose, Optional[float]]] = None
@@ -112,7 +97,7 @@ class RobotPlace:
         self._lost = ''
 
     def drive(self, odometry: Odometry) -> None:
-        """Take in what its odometry says; what cannot go on from the last takes away the hand's."""
+        """Handle odometry; if it does not continue the last, the placement by hand is lost."""
         problem = odometry.problem(self.odometry, self._gap_s) if self.odometry else ''
         if problem and self.hand is not None:
             self.hand, self._lost = None, 'it was placed by hand, but {}: place it again'.format(
@@ -120,49 +105,49 @@ class RobotPlace:
         self.odometry, self._gap_s = odometry, GAP_S
 
     def capture(self, pose: Pose, at_s: float) -> None:
-        """Take in its pose by motion capture, which counts from the first odometry on."""
+        """Handle its pose by motion capture, which is used once there is odometry."""
         self.seen_at = at_s
         if self.odometry is not None:
             self._captured = (composed(pose, inverse(self.odometry.pose)), at_s)
 
-    def see_tf(self, origin: Optional[Pose], at_s: Optional[float] = None,
-               problem: str = '') -> None:
-        """Take in the origin of its odometry by tf, None with the reason.
+    def update_tf(self, origin: Optional[Pose], at_s: Optional[float] = None,
+                  problem: str = '') -> None:
+        """Handle the origin of its odometry by tf, None with a reason if tf lacks it.
 
-        :param at_s: None: it does not grow old
+        :param at_s: time of receipt, None if it does not age
         """
         if origin is not None:
             self._tf = (origin, at_s)
         self._no_tf = '' if origin is not None else problem
 
     def forget_tf(self, problem: str) -> None:
-        """Do without tf at once, for a reason."""
+        """Discard the origin by tf, for a reason."""
         self._tf, self._no_tf = None, problem
 
     def put(self, pose: Pose, now_s: float) -> str:
-        """Place it by hand where it is now; return why that cannot be, '' if it is done."""
+        """Place it by hand; return the problem, '' on success."""
         rests = self.place(now_s)
         if rests.by in (MOTION_CAPTURE, TF):
             return 'it is placed by {} already{}'.format(
                 WORDS[rests.by], ': correct its localisation instead' if rests.by == TF else '')
         if self.odometry is None or now_s - self.odometry.at_s > GAP_S:
-            return 'its odometry is not heard: it cannot be placed by hand'
+            return 'it has no odometry, so it cannot be placed by hand'
         self.hand = composed(pose, inverse(self.odometry.pose))
         self._lost = ''
         return ''
 
     def take_back(self) -> None:
-        """Forget what the hand has placed."""
+        """Remove the placement by hand."""
         self.hand, self._lost = None, ''
 
     def resume(self, origin: Pose, odometry: Pose, at_s: float) -> None:
-        """Place it as the hand had, before this program was started again."""
+        """Restore the placement by hand after a restart of this program."""
         if self.odometry is None and self.hand is None:
             self.hand, self.odometry = origin, Odometry(odometry, at_s)
             self._gap_s = RESTART_S
 
     def place(self, now_s: float) -> Place:
-        """Return what its place rests on now."""
+        """Return its present place."""
         for by, found in ((MOTION_CAPTURE, self._captured), (TF, self._tf)):
             if found is None:
                 continue
@@ -171,36 +156,36 @@ class RobotPlace:
             if not age_s > GONE_S:
                 text = 'by ' + WORDS[by]
                 if age_s > OLD_S:
-                    text += ', which has said nothing for {:.1f} s'.format(age_s)
+                    text += ', without data for {:.1f} s'.format(age_s)
                 return Place(by, text, age_s, origin)
         if self.hand is not None:
             return Place(HAND, 'by hand', math.nan, self.hand)
         if self._lost:
             return Place(text=self._lost)
         if self.odometry is None:
-            return Place(text='it is not placed: its odometry is not heard')
+            return Place(text='it is not placed: it has no odometry')
         return Place(text='it is not placed: {}{}'.format(
             self._no_tf + ': ' if self._no_tf else '', REMEDY))
 
 
 def tf_problem(frame: str, odometry_frame: str, frames: List[str]) -> str:
-    """Return why tf cannot place a robot, '' where it might.
+    """Return why tf cannot place a robot, '' if it can.
 
-    :param frame: that of the map
-    :param odometry_frame: of this robot's odometry, '' for none
-    :param frames: the same of all robots
+    :param frame: frame of the map
+    :param odometry_frame: frame of this robot's odometry, '' if unknown
+    :param frames: frames of the odometry of all robots
     """
     if not odometry_frame:
         return 'its odometry names no frame'
     if frames.count(odometry_frame) > 1:
-        return 'several robots call the frame of their odometry {}'.format(odometry_frame[:60])
+        return 'several robots use the odometry frame {}'.format(odometry_frame[:60])
     if odometry_frame == frame:
-        return 'its odometry says that it is the map'
+        return 'its odometry uses the frame of the map'
     return ''
 
 
 class Corrections:
-    """Watches the place of one robot on its way, which its localisation may correct."""
+    """Detects corrections of a robot's place by its localisation."""
 
     def __init__(self) -> None:
         self._origin: Optional[Pose] = None
@@ -208,7 +193,7 @@ class Corrections:
         self._text = ''
 
     def settling(self, place: Place, odometry: Pose, now_s: float) -> str:
-        """Return in words that its place was just corrected by far, '' where it was not."""
+        """Return a sentence if its place was just corrected by far, else ''."""
         before, self._origin = self._origin, place.odometry
         if before is not None and place.odometry is not None:
             was, now = composed(before, odometry), composed(place.odometry, odometry)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the map shows, as plain values: robots where they are placed, goals, marks, the fence."""
+"""The content of the map as plain values: placed robots, goals, marks, the fence."""
 from dataclasses import dataclass, field
 import math
 from typing import Dict, List, Mapping, Optional, Sequence, Tuple
@@ -8,25 +8,24 @@ from typing import Dict, List, Mapping, Optional, Sequence, Tuple
 import numpy as np
 
 from mhri.base.config import ConfigError, parse_yaml
-from mhri.base.mocap import Pose
-from mhri.base.views import LIVE, RobotView
-from mhri.map.places import composed
+from mhri.base.geometry import composed, Pose
+from mhri.base.views import FlagView, LIVE, RobotView
 from mhri.map.trail import Trail
 
 Places = Tuple[Tuple[float, float], ...]
 
-# What a place rests on that grows old is shown as old after so long [s].
+# Age at which a place is shown as old [s].
 OLD_S = 2.0
-# A route is drawn with so many corners at most.
-MOST_CORNERS = 1000
+# Maximum number of corners of a drawn route.
+MAX_CORNERS = 1000
 
 
 @dataclass(frozen=True)
 class Placing:
-    """Where a robot is placed: the origin of its odometry in the frame, None if it is not.
+    """The place of a robot: the origin of its odometry in the frame, None if it is not placed.
 
-    ``text`` says on what it rests, or why it is not placed and what to do; ``age_s`` how old that
-    is [s], None where it does not grow old.
+    ``text`` names its source, or why it is not placed, and the remedy; ``age_s`` is its age [s],
+    None if it does not age.
     """
 
     origin: Optional[Pose] = None
@@ -45,9 +44,9 @@ class MapMark:
 
 @dataclass(frozen=True)
 class PlacesView:
-    """What is known of the frame: its name, where robots are placed, marks, corners of the fence.
+    """The frame: its name, places of robots, marks, corners of the fence.
 
-    ``answers`` is false while nobody says it.
+    ``answers`` is whether the task service reports it.
     """
 
     frame: str = ''
@@ -59,7 +58,7 @@ class PlacesView:
 
 @dataclass(frozen=True)
 class UnderWay:
-    """A task that is under way: its key, its parameters as YAML, its robots."""
+    """A running task: its key, its parameters as YAML, its robots."""
 
     task: str
     parameters: str
@@ -68,11 +67,12 @@ class UnderWay:
 
 @dataclass(frozen=True)
 class MapRobot:
-    """A robot as the map draws it; ``pose`` is None while it is not placed, or not heard.
+    """A robot as drawn on the map; ``pose`` is None if it is not placed, or without odometry.
 
-    ``state`` is a word of its state, ``trouble`` the same where it needs a person, ``text`` what
-    its place rests on, ``task`` the name of what it does by itself, ``old`` whether its place is
-    not from now. ``points`` (n, 2) is what its laser has met, in the frame [m].
+    ``state`` is its state in a word, ``trouble`` the same if it needs attention, ``text`` the
+    source of its place, ``task`` the name of its task, ``old`` whether its place is outdated.
+    ``lost`` is "lost 19:23" for a robot that no longer sends, '' for any other.
+    ``points`` (n, 2) are its laser points in the frame [m].
     """
 
     name: str
@@ -87,13 +87,14 @@ class MapRobot:
     text: str = ''
     task: str = ''
     old: bool = False
+    lost: str = ''
     points: Optional[np.ndarray] = None
     trail: Optional[Trail] = None
 
 
 @dataclass(frozen=True)
 class Goal:
-    """Where robots go: a route of corners, of which one with a heading may be the only."""
+    """The goal of robots: a route of corners, or one corner with a heading."""
 
     robots: Tuple[str, ...]
     route: Places
@@ -103,7 +104,10 @@ class Goal:
 
 @dataclass(frozen=True)
 class Scene:
-    """Everything that the map shows at one instant."""
+    """Everything that the map shows at one instant.
+
+    ``flags`` are the marks of the session: where they were made, with their notes.
+    """
 
     frame: str = ''
     robots: Tuple[MapRobot, ...] = ()
@@ -112,22 +116,23 @@ class Scene:
     marks: Tuple[MapMark, ...] = ()
     fence: Places = ()
     answers: bool = True
+    flags: Tuple[FlagView, ...] = ()
 
     def robot(self, name: str) -> Optional[MapRobot]:
         """Return a robot by its name."""
         return next((robot for robot in self.robots if robot.name == name), None)
 
     def at(self, x_m: float, y_m: float, within_m: float) -> Optional[MapRobot]:
-        """Return the robot that is at a place, or as near as this [m]; the nearest of several."""
+        """Return the robot at a position, or the nearest one within a distance [m]."""
         near = [(math.hypot(robot.pose.x_m - x_m, robot.pose.y_m - y_m), robot.name, robot)
                 for robot in self.robots if robot.pose is not None]
         near = [row for row in near if row[0] <= max(within_m, row[2].radius_m)]
         return min(near)[2] if near else None
 
     def targets(self, clicked: str = '') -> Tuple[str, ...]:
-        """Return the robots that are meant: the one clicked, else those selected or looked at.
+        """Return the addressed robots: the clicked, else the selected, else the one in view.
 
-        :param clicked: the robot that was clicked on the map, '' for none
+        :param clicked: the robot that was clicked on the map, '' without one
         """
         if self.robot(clicked) is not None:
             return (clicked,)
@@ -139,16 +144,17 @@ class Scene:
         return tuple(robot.name for robot in self.robots if robot.selected)
 
     def mark_at(self, x_m: float, y_m: float, within_m: float) -> Optional[MapMark]:
-        """Return the mark that is as near to a place as this [m]."""
+        """Return the mark within a distance of a position [m]."""
         near = [(math.hypot(mark.pose.x_m - x_m, mark.pose.y_m - y_m), mark.name, mark)
                 for mark in self.marks]
         near = [row for row in near if row[0] <= within_m]
         return min(near)[2] if near else None
 
     def bounds(self) -> Optional[Tuple[Tuple[float, float], Tuple[float, float]]]:
-        """Return two corners (x, y) [m] between which is all that is placed, None for nothing."""
+        """Return two corners (x, y) [m] around everything placed, None without anything."""
         places = [(robot.pose.x_m, robot.pose.y_m) for robot in self.robots if robot.pose]
         places += [(mark.pose.x_m, mark.pose.y_m) for mark in self.marks]
+        places += [(flag.x_m, flag.y_m) for flag in self.flags]
         places += self.fence
         if not places:
             return None
@@ -157,14 +163,8 @@ class Scene:
         return (float(least[0]), float(least[1])), (float(most[0]), float(most[1]))
 
 
-def in_frame(pose: Pose, points: np.ndarray) -> np.ndarray:
-    """Return points (n, 2), given in the frame of a pose, in that one's own frame."""
-    cos, sin = math.cos(pose.heading_rad), math.sin(pose.heading_rad)
-    return np.asarray(points @ np.array(((cos, sin), (-sin, cos))) + (pose.x_m, pose.y_m))
-
-
 def own_pose(view: RobotView) -> Optional[Pose]:
-    """Return the pose of a robot in its odometry, None before it was heard, or if it is none."""
+    """Return the pose of a robot by odometry, None if it is missing or invalid."""
     if view.x_m is None or view.y_m is None or view.heading_rad is None:
         return None
     pose = Pose(view.x_m, view.y_m, view.heading_rad)
@@ -172,7 +172,7 @@ def own_pose(view: RobotView) -> Optional[Pose]:
 
 
 def state_word(view: RobotView) -> Tuple[str, str]:
-    """Return a word of a robot's state, and the same where it needs a person, else ''."""
+    """Return a robot's state in a word, and the same if it needs attention, else ''."""
     if view.link != LIVE:
         return view.link, view.link
     if view.on_task:
@@ -183,12 +183,11 @@ def state_word(view: RobotView) -> Tuple[str, str]:
     return ('selected' if view.selected else 'standing' if not view.moving else 'moving'), ''
 
 
-def map_robot(view: RobotView, placing: Optional[Placing], radius_m: float, looked_at: bool,
-              trail: Optional[Trail] = None, points: Optional[np.ndarray] = None) -> MapRobot:
-    """Return a robot as the map draws it.
+def map_robot(view: RobotView, placing: Optional[Placing], radius_m: float,
+              looked_at: bool) -> MapRobot:
+    """Return a robot as drawn on the map, without trail and laser points.
 
-    :param placing: None while nobody says where it is placed
-    :param points: what its laser has met, in the frame [m]
+    :param placing: its place, None if unknown
     """
     own = own_pose(view)
     origin = placing.origin if placing is not None else None
@@ -198,16 +197,15 @@ def map_robot(view: RobotView, placing: Optional[Placing], radius_m: float, look
     return MapRobot(
         view.name, view.number, pose, radius_m, view.selected, view.driven, looked_at, state,
         trouble, _place_text(view, placing, own),
-        (view.task.label if view.task else 'task') if view.on_task else '', bool(old),
-        points if pose is not None and view.link == LIVE else None, trail)
+        (view.task.label if view.task else 'task') if view.on_task else '', bool(old))
 
 
 def _place_text(view: RobotView, placing: Optional[Placing], own: Optional[Pose]) -> str:
-    """Return in words what its place rests on and how old that is, or why it has none."""
+    """Describe the source and age of its place, or why it is not placed."""
     if placing is None or placing.origin is None:
         return (placing.text if placing is not None else '') or 'not placed: place it'
     if own is None:
-        return 'placed, but its odometry is not heard'
+        return 'placed, but without odometry'
     words = placing.text or 'placed'
     if placing.age_s is not None and placing.age_s > OLD_S:
         words += ', {:.0f} s old'.format(placing.age_s)
@@ -217,7 +215,7 @@ def _place_text(view: RobotView, placing: Optional[Placing], own: Optional[Pose]
 
 
 def goals_of(runs: Sequence[UnderWay]) -> Tuple[Tuple[Goal, ...], Tuple[Tuple[str, str], ...]]:
-    """Return where robots on tasks go, and pairs (robot, its leader), as their parameters say."""
+    """Return the goals of robots on tasks, and pairs (robot, leader), from their parameters."""
     goals: List[Goal] = []
     leaders: List[Tuple[str, str]] = []
     for run in runs:
@@ -225,7 +223,7 @@ def goals_of(runs: Sequence[UnderWay]) -> Tuple[Tuple[Goal, ...], Tuple[Tuple[st
         route = _route(values.get('route'))
         place = _route([[values.get('x'), values.get('y')]])
         heading = values.get('heading')
-        if values.get('frame'):  # by its own odometry: where that is, only the robot knows
+        if values.get('frame'):  # by its own odometry, whose origin is unknown
             continue
         if route or place:
             aimed = not route and isinstance(heading, (int, float))
@@ -237,7 +235,7 @@ def goals_of(runs: Sequence[UnderWay]) -> Tuple[Tuple[Goal, ...], Tuple[Tuple[st
 
 
 def _parameters(text: str) -> Dict[str, object]:
-    """Return the parameters of a task by their names; nothing of what is not YAML."""
+    """Return the parameters of a task by name, {} for invalid YAML."""
     names = ('x', 'y', 'heading', 'route', 'leader', 'frame')
     try:
         section = parse_yaml(text or '{}', 'task')
@@ -247,9 +245,9 @@ def _parameters(text: str) -> Dict[str, object]:
 
 
 def _route(value: object) -> Places:
-    """Return corners of finite numbers, nothing if it is anything else."""
+    """Return corners of finite numbers, () for anything else."""
     corners: List[Tuple[float, float]] = []
-    for row in value[:MOST_CORNERS] if isinstance(value, list) else ():
+    for row in value[:MAX_CORNERS] if isinstance(value, list) else ():
         if not (isinstance(row, list) and len(row) == 2 and all(
                 type(part) in (int, float) and abs(part) < 1e6 for part in row)):
             return ()

@@ -1,27 +1,25 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Several robots sent to one place: side by side there, not all on one point."""
+"""Spreads several robots sent to one position side by side."""
 import math
 from typing import Callable, Dict, List, Mapping, Optional, Tuple
 
 import numpy as np
 
-from mhri.base.mocap import Pose
+from mhri.base.geometry import beside, Pose, within
 from mhri.map.assignment import shared_out
 from mhri.map.grid import Grid, TAKEN_FROM
 
-# From middle to middle, in radii of the largest.
+# Spacing of centres, in radii of the largest robot.
 SPACING_RADII = 2.5
-# More than so many stand in several rows.
+# Maximum number of robots in a row.
 _IN_A_ROW = 4
 
 
 def has_room(grid: Grid, x_m: float, y_m: float, radius_m: float) -> bool:
-    """Tell whether nothing is known to stand in a disc [m] on a map of cells."""
-    cos, sin = math.cos(grid.origin.heading_rad), math.sin(grid.origin.heading_rad)
-    ahead, left = x_m - grid.origin.x_m, y_m - grid.origin.y_m
-    column = (ahead * cos + left * sin) / grid.resolution_m - 0.5
-    row = (left * cos - ahead * sin) / grid.resolution_m - 0.5
+    """Return whether a disc [m] is free on a map of cells."""
+    column, row = (side_m / grid.resolution_m - 0.5
+                   for side_m in within(grid.origin, Pose(x_m, y_m, 0.0)))
     reach = radius_m / grid.resolution_m
     rows, columns = (slice(max(0, math.ceil(middle - reach)),
                            max(0, math.floor(middle + reach) + 1)) for middle in (row, column))
@@ -31,16 +29,12 @@ def has_room(grid: Grid, x_m: float, y_m: float, radius_m: float) -> bool:
 
 def _places(goal: Pose, count: int, spacing_m: float,
             free: Callable[[float, float], bool]) -> List[Tuple[float, float]]:
-    """Return so many free places beside and behind a goal; it is the middle of the first row."""
-    across = (-math.sin(goal.heading_rad), math.cos(goal.heading_rad))
-    back = (-math.cos(goal.heading_rad), -math.sin(goal.heading_rad))
+    """Return free positions beside and behind a goal, the centre of the first row."""
     found: List[Tuple[float, float]] = []
     in_row = min(count, _IN_A_ROW)
     for row in range(2 * count + 2):
         for number in range(in_row):
-            aside, behind = (number - (in_row - 1) / 2.0) * spacing_m, row * spacing_m
-            place = (goal.x_m + aside * across[0] + behind * back[0],
-                     goal.y_m + aside * across[1] + behind * back[1])
+            place = beside(goal, -row * spacing_m, (number - (in_row - 1) / 2.0) * spacing_m)
             if len(found) < count and free(*place):
                 found.append(place)
     return found
@@ -48,12 +42,12 @@ def _places(goal: Pose, count: int, spacing_m: float,
 
 def spread(goal: Pose, robots: Mapping[str, Optional[Pose]], radius_m: float,
            free: Callable[[float, float], bool] = lambda x_m, y_m: True) -> Dict[str, Pose]:
-    """Return where each robot goes, all with the heading of the goal; ways do not cross.
+    """Return the goal of each robot, with the heading of the common goal; paths do not cross.
 
-    :param robots: where they are, None if nobody knows
+    :param robots: their poses, None if unknown
     :param radius_m: of the largest of them
-    :param free: tells whether a robot can stand at (x, y) [m]
-    :returns: robots for which there is no free place are left out
+    :param free: returns whether a robot can stand at (x, y) [m]
+    :returns: robots without a free position are left out
     """
     names = list(robots)
     if len(names) == 1:

@@ -1,29 +1,29 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Where a robot was a moment ago: a scan is drawn from where it was measured."""
+"""Recent poses of a robot, to draw scans from where they were measured."""
 import collections
 import math
 from typing import Deque, Optional, Tuple
 
-from mhri.base.mocap import Pose
+from mhri.base.geometry import Pose
 
-# So many poses are known: two seconds of a screen that is drawn at 20 Hz.
+# Number of poses to keep: two seconds of a screen at 20 Hz.
 _MOST = 40
 
 
 class Track:
-    """The newest poses of a robot's odometry and when they came; times are passed in."""
+    """The newest odometry poses of a robot with their times of receipt."""
 
     def __init__(self) -> None:
         self._poses: Deque[Tuple[float, Pose]] = collections.deque(maxlen=_MOST)
 
     def add(self, at_s: float, pose: Pose) -> None:
-        """Take in a pose; one that is not newer than the last is known already."""
+        """Add a pose, unless it is not newer than the last."""
         if not self._poses or at_s > self._poses[-1][0] + 1e-3:
             self._poses.append((at_s, pose))
 
     def at(self, at_s: float) -> Optional[Pose]:
-        """Return where it was at a time, the nearest end of what is known beyond; None: unknown."""
+        """Return the pose at a time, clipped to the known range; None if unknown."""
         before: Optional[Tuple[float, Pose]] = None
         for row in self._poses:
             if row[0] >= at_s:

@@ -1,19 +1,19 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The trail of a robot on the map: where it was, when, and how good its link was there."""
+"""The trail of a robot on the map: positions, times, and the quality of its link there."""
 import math
 from typing import Iterator, List, NamedTuple, Tuple
 
 import numpy as np
 
-from mhri.base.mocap import Pose
+from mhri.base.geometry import Pose
 from mhri.base.views import LinkFigures
 from mhri.robots.link_quality import SLOW_ROUND_TRIP_S, WARN_LOSS
 
-# How good a link is.
+# Quality of a link.
 GOOD, SLOW, LOST = 0, 1, 2
 LINK_WORDS = ('good link', 'slow link', 'no link')
-# How long ago it was, 0 to 2: up to each of these [s], and longer.
+# Upper limits of the age classes 0 and 1 [s]; 2 is older.
 AGES_S = (10.0, 60.0)
 
 _MOST = 600
@@ -21,9 +21,9 @@ _STEP_M, _TURN_M = 0.05, 0.5
 
 
 def link_grade(figures: LinkFigures, live: bool) -> int:
-    """Return how good a link is: GOOD, SLOW or LOST.
+    """Return the quality of a link: GOOD, SLOW or LOST.
 
-    :param live: whether the robot is heard
+    :param live: whether the robot is live
     """
     if not live:
         return LOST
@@ -32,7 +32,7 @@ def link_grade(figures: LinkFigures, live: bool) -> int:
 
 
 class _Spot(NamedTuple):
-    """One place of a trail; ``follows`` is false where it did not drive there from the last."""
+    """One point of a trail; ``follows`` is whether the robot drove there from the last one."""
 
     x_m: float
     y_m: float
@@ -42,9 +42,9 @@ class _Spot(NamedTuple):
 
 
 class Trail:
-    """The newest places of a robot in the frame of the map, never more than ``most``.
+    """The newest positions of a robot in the frame of the map, at most ``most``.
 
-    The older a place is, the fewer of its neighbours are kept.
+    Older points are kept at larger spacing.
     """
 
     def __init__(self, most: int = _MOST) -> None:
@@ -55,9 +55,9 @@ class Trail:
         return len(self._spots)
 
     def add(self, pose: Pose, link: int, now_s: float) -> bool:
-        """Take in where it is; return whether that is worth a place of its own.
+        """Add a pose; return whether it becomes a new point.
 
-        A step of more than half a metre is none that it drove: it was placed anew.
+        A step of more than half a metre was not driven: the robot was placed again.
         """
         if self._spots:
             last = self._spots[-1]
@@ -73,7 +73,7 @@ class Trail:
         return True
 
     def _thin(self) -> None:
-        """Drop every second place of the older half, but none at which something changes."""
+        """Drop every second point of the older half, except where something changes."""
         half = len(self._spots) // 2
         kept: List[_Spot] = []
         for index, spot in enumerate(self._spots[:half]):
@@ -83,7 +83,7 @@ class Trail:
         self._spots = (kept + self._spots[half:])[-self._most:]
 
     def tail(self, since_s: float) -> np.ndarray:
-        """Return the places (n, 2) [m] that came later, and the one before them."""
+        """Return the points (n, 2) [m] after a time, and the one before them."""
         newest: List[Tuple[float, float]] = []
         for spot in reversed(self._spots):
             newest.append((spot.x_m, spot.y_m))
@@ -92,9 +92,9 @@ class Trail:
         return np.array(newest[::-1]).reshape(-1, 2)
 
     def pieces(self, by_link: bool, now_s: float) -> Iterator[Tuple[int, np.ndarray]]:
-        """Yield (grade, places (n, 2) [m]) of pieces of one grade; each begins where one ended.
+        """Yield (grade, positions (n, 2) [m]) of pieces of one grade, each joined to the previous.
 
-        :param by_link: the grade is GOOD, SLOW or LOST; else how old it is, see
+        :param by_link: whether the grade is GOOD, SLOW or LOST, else the age class of
             :data:`AGES_S`
         """
         piece: List[Tuple[float, float]] = []

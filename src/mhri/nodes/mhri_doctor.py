@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The executable ``mhri_doctor``: examines the ROS system, says what is wrong and how to fix it.
+"""The executable ``mhri_doctor``: examines the ROS system, reports problems and their remedies.
 
 ``rosrun mhri mhri_doctor [robot ...] [--json] [--quick] [--watchdog [--yes]]``; exit status 0:
-nothing wrong, 1: findings, 2: wrong use. See :mod:`mhri.doctor.ros.examination`. It is not a node,
+no findings, 1: findings, 2: wrong usage. See :mod:`mhri.doctor.ros.examination`. It is not a node,
 except with ``--watchdog`` (``mhri_doctor_*``, which publishes ``/<robot>/<command>``,
 ``geometry_msgs/Twist``, for a moment).
 """
@@ -16,7 +16,7 @@ import time
 import rosgraph
 
 from mhri.base.names import name_problem, tidy_name
-from mhri.graph.ros.started import started_s
+from mhri.graph.ros.process_start import started_s
 
 _WARNING = """
 WARNING: {} WILL TURN, and perhaps not stop for 3 s.
@@ -27,7 +27,7 @@ stops by itself; at the end it is sent zeros in any case.
 
 
 def _robot(text):
-    """Read the name of a robot."""
+    """Parse the name of a robot."""
     name = tidy_name(text)
     problem = name_problem(name)
     if problem:
@@ -37,7 +37,7 @@ def _robot(text):
 
 
 def _parse(arguments):
-    """Read the command line; exit with 2 if it is wrong."""
+    """Parse the command line; exit with 2 if it is invalid."""
     parser = argparse.ArgumentParser(
         prog='mhri_doctor', description='Examine the ROS system: variables, master, nodes, robots. '
         'Exit status: 0 nothing wrong, 1 findings, 2 wrong use.')
@@ -60,7 +60,7 @@ def _parse(arguments):
 
 
 def _agreed(options):
-    """Warn and ask; return whether the trial may begin."""
+    """Warn and ask; return whether the trial may start."""
     names = ', '.join(options.robot)
     print(_WARNING.format(names), file=sys.stderr)
     if options.yes:
@@ -74,7 +74,7 @@ def _watchdogs(options):
     # Importing rospy and its messages takes time: only the trial needs them.
     import rospy
     from mhri.doctor.ros.watchdog import measure_watchdog
-    # A signal must end the trial through its zeros, and rospy's own handlers would end the node.
+    # A signal must end the trial with its zeros, and rospy's own handlers would end the node.
     rospy.init_node('mhri_doctor', anonymous=True, disable_signals=True)
     for number in (signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, lambda number, _: sys.exit(128 + number))
@@ -92,8 +92,8 @@ def main():
         print('nothing was moved', file=sys.stderr)
         sys.exit(2)
     if options.watchdog:
-        begun = time.monotonic()  # the question may have waited a long time
-    # Answer wrong use and --help without the time these imports take.
+        begun = time.monotonic()  # the answer may have taken a long time
+    # Imported late, so that wrong usage and --help are answered quickly.
     from mhri.doctor.judgement import as_dict, as_lines, exit_status
     from mhri.doctor.ros.examination import examine, WATCH_S
     findings = examine(options.robot, begun=begun, watch_s=0.0 if options.quick else WATCH_S)

@@ -2,10 +2,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The executable ``mhri_drill``: the referee of a drill, and its scripted operator.
 
-``mhri_run.sh --drill NAME`` starts everything; by itself it referees a drill whose robots run
-already. It begins with the first push of the stick, and ends when all targets are found, when the
-time is up, or with this program. The exit status is 0 if all were found, 1 if not, 2 for a drill
-that cannot be used.
+``mhri_run.sh --drill NAME`` starts everything; by itself it referees a drill whose robots are
+already running. The drill starts with the first deflection of the stick, and ends when all targets
+are found, when the time is up, or with this program. The exit status is 0 if all were found, 1 if
+not, 2 for an unusable drill.
 """
 import argparse
 import sys
@@ -21,11 +21,11 @@ from mhri.drill.rehearsal import LIMITS, Rehearsal
 from mhri.drill.results import compared, lines_of, result_of
 from mhri.drill.ros.files import earlier, folder_of, names, result_in, scenario_named, write
 from mhri.drill.ros.scripted_hands import ScriptedHands
-from mhri.drill.ros.state import DrillTeller
+from mhri.drill.ros.state import DrillPublisher
 from mhri.drill.ros.watch import FaultCaller, OperatorWatch
 from mhri.drill.scenario import on_links
-from mhri.graph.ros.ending import init_node
 from mhri.graph.ros.resources import read_text, robot_types
+from mhri.graph.ros.shutdown import init_node
 from mhri.msg import DrillState
 from mhri.nodes.sim_robot import body_type, building_key
 from mhri.sim.plan import parse_plan
@@ -34,7 +34,7 @@ from mhri.sim.world import look_in, world_path
 LOOK_HZ = 20.0
 # The robots start with the drill; on a slow machine that takes a while [s].
 START_S = 180.0
-# So long the last word has to leave.
+# Time for the last message to be sent [s].
 FLUSH_S = 0.2
 
 
@@ -49,6 +49,8 @@ def parse(argv):
                         help='the scripted operator drives without ROS, in a few seconds')
     parser.add_argument('--delay', type=float, default=0.0, metavar='S',
                         help='delay of every link each way [s], 0 to 5')
+    parser.add_argument('--path', action='store_true',
+                        help='with --rehearse: steer by the committed path on the picture')
     parser.add_argument('--compare', nargs='+', metavar='RUN',
                         help='print the results of several runs side by side: their folders')
     parser.add_argument('--arguments', action='store_true',
@@ -64,7 +66,7 @@ def parse(argv):
 class Drill:
     """A scenario with its building and the bodies of its robots.
 
-    :raises ConfigError: it cannot be used
+    :raises ConfigError: the scenario cannot be used
     :raises OSError: a file cannot be read
     """
 
@@ -78,7 +80,7 @@ class Drill:
 
     @staticmethod
     def _body(robot, kind):
-        """Return (body, limits) of a type as ``sim.launch`` names it."""
+        """Return (body, limits) of a type by its name in ``sim.launch``."""
         name, _, model = kind.partition('_')
         template, errors = resolve_robot_type(robot_types()[0], robot, {
             'robot_type': name, **({'robot_model': model} if model else {})})
@@ -91,15 +93,16 @@ class Drill:
         return Referee(self.scenario, {robot: body.radius_m for robot, (body, _) in
                                        self.bodies.items()}, self.plan.distance, self.plan.walls)
 
-    def rehearse(self, delay_s):
+    def rehearse(self, delay_s, with_path):
         """Return the result of a run without ROS."""
-        return Rehearsal(self.scenario, self.plan, self.bodies, delay_s).run()
+        return Rehearsal(self.scenario, self.plan, self.bodies, delay_s,
+                         with_path=with_path).run()
 
 
 class Run:
     """One run on the graph.
 
-    :param delay_s: of every link, each way
+    :param delay_s: delay of every link in each direction [s]
     """
 
     def __init__(self, drill, delay_s, scripted):
@@ -107,7 +110,7 @@ class Run:
         self._delay_s = delay_s
         self._operator = 'script' if scripted else 'person'
         self._referee = drill.referee()
-        self._teller = DrillTeller(drill.scenario, self._referee)
+        self._publisher = DrillPublisher(drill.scenario, self._referee)
         self._watch = OperatorWatch()
         self._faults = FaultCaller(drill.scenario.robots)
         self._due = on_links(drill.scenario.faults, delay_s)
@@ -115,7 +118,7 @@ class Run:
         self._wall_s = None
 
     def _look(self):
-        """Return ({robot: pose}, [others]) as they truly are."""
+        """Return the ground truth ({robot: pose}, [others])."""
         rows = look_in(self._world, time.monotonic)
         poses, others = {}, []
         for row in rows:
@@ -127,7 +130,7 @@ class Run:
         return poses, others
 
     def wait_for_robots(self):
-        """Return whether all robots are there in time."""
+        """Wait for all robots; return whether they are up in time."""
         deadline = time.monotonic() + START_S
         while not rospy.is_shutdown() and time.monotonic() < deadline:
             if len(self._look()[0]) == len(self._drill.bodies):
@@ -138,7 +141,7 @@ class Run:
         return False
 
     def run(self):
-        """Referee from the first push of the stick to the end; return the result, None without."""
+        """Referee from the first deflection of the stick to the end; return the result or None."""
         rate = rospy.Rate(LOOK_HZ)
         try:
             while not rospy.is_shutdown() and not self._referee.over():
@@ -147,10 +150,10 @@ class Run:
                     self._wall_s = time.time()
                     self._referee.begin(time.monotonic())
                 if self._wall_s is not None:
-                    self._referee.see(time.monotonic(), *self._look(), doing)
+                    self._referee.update(time.monotonic(), *self._look(), doing)
                     self._begin_faults()
-                self._teller.tell(DrillState.WAITING if self._wall_s is None
-                                  else DrillState.RUNNING)
+                self._publisher.publish(DrillState.WAITING if self._wall_s is None
+                                        else DrillState.RUNNING)
                 rate.sleep()
         except rospy.ROSInterruptException:
             pass
@@ -160,9 +163,9 @@ class Run:
         return result_of(self._drill.scenario, self._referee, self._wall_s, self._operator)
 
     def tell_end(self, result, page):
-        """Say how it ended, and where its page is ('' for nowhere)."""
+        """Publish the result, and the path of its page ('' for none)."""
         if not rospy.is_shutdown():
-            self._teller.tell(DrillState.ENDED, result['ended'], page)
+            self._publisher.publish(DrillState.ENDED, result['ended'], page)
             time.sleep(FLUSH_S)
 
     def _begin_faults(self):
@@ -174,7 +177,7 @@ class Run:
 
 
 def keep(drill, result, rehearsed=False):
-    """Print a result, write it, and say where; return the path of its page, '' without one."""
+    """Print and write a result, and print its place; return the path of its page, '' for none."""
     before = earlier(drill.scenario)
     print('\n'.join(lines_of(result, before)), flush=True)
     try:
@@ -213,7 +216,7 @@ def referee(drill, options):
 
 
 def main():
-    """Do what the command line says, and exit."""
+    """Run the command line, and exit."""
     options = parse(rospy.myargv(sys.argv)[1:])
     try:
         if options.compare:
@@ -227,7 +230,7 @@ def main():
     if options.arguments:
         print(len(drill.scenario.types), ' '.join(drill.scenario.types), drill.plan_path, sep='\n')
     elif options.rehearse:
-        result = drill.rehearse(options.delay)
+        result = drill.rehearse(options.delay, options.path)
         keep(drill, result, rehearsed=True)
         sys.exit(status_of(result))
     else:

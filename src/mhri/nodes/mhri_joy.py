@@ -15,14 +15,8 @@ import sys
 
 import rospy
 
-from mhri.devices.io.pad import PadReader
-from mhri.devices.ros.input_node import InputNode
-from mhri.devices.ros.pad_profiles import own_folder, pad_profiles, shipped_names
-from mhri.devices.ros.rumble import Rumble
-from mhri.graph.ros import log
-from mhri.graph.ros.ending import init_node
-from mhri.graph.ros.live_parameter import LiveParameter
-from mhri.graph.ros.peers import limit_peers
+from mhri.devices.ros.device import run
+from mhri.devices.ros.pad_profiles import own_folder, shipped_names
 
 
 def main():
@@ -31,12 +25,4 @@ def main():
     if '--calibrate' in argv:
         from mhri.devices.io.pad_calibration import calibrate
         sys.exit(calibrate(argv, own_folder(), shipped_names()))
-    limit_peers()
-    init_node('mhri_joy')
-    log.install()
-    reader = PadReader(pad_profiles)
-    node = InputNode(reader, '/mux_in/ps3joy', '~set_suspended')
-    Rumble(reader.rumble, '~rumble')
-    LiveParameter('~device', '', reader.want, node.resumed).start()
-    node.start()
-    rospy.spin()
+    run('joy')

@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The executable ``mhri_replay``: replays a session, a folder of bags or a bag.
 
-It needs a master of its own: ``utils/host/mhri_run.sh --replay FOLDER`` starts both. Parameters it
-sets: ``/<robot>`` of each robot as recorded, ``/mux/sources``, ``/mhri/replay/robots`` ({name:
-number}), ``/mhri/replay/driven`` (whether mhri drove them).
+It needs a separate master: ``utils/host/mhri_run.sh --replay FOLDER`` starts both. It sets the
+parameters ``/<robot>`` of each robot as recorded, ``/mux/sources``, ``/mhri/replay/robots`` ({name:
+number}) and ``/mhri/replay/driven`` (whether mhri drove them).
 """
 import argparse
 import sys
@@ -13,22 +13,23 @@ import rosgraph
 import rospy
 
 from mhri.base.config import ConfigError
-from mhri.driving.sources import parse_mux_config
-from mhri.graph.ros.ending import init_node
-from mhri.graph.ros.in_force import STOP_SERVICE, TAKE_SERVICE
+from mhri.base.robot_types import resolve_robot_type
+from mhri.driving.ros.mux_file import read_mux_config, shipped_path
 from mhri.graph.ros.master_api import MasterApi
-from mhri.graph.ros.resources import profile_reader, read_text, resource_path, robot_types
+from mhri.graph.ros.resources import robot_types
+from mhri.graph.ros.service_owner import STOP_SERVICE
+from mhri.graph.ros.shutdown import init_node
 from mhri.recording.folder import NotASession
 from mhri.recording.ros.bag_set import open_session
 from mhri.session.foreign import robots_of_topics
 from mhri.session.ros.player import Player
+from mhri.session.topics import accessory_commands, DRIVE
 
 ROBOTS_PARAMETER, DRIVEN_PARAMETER = '/mhri/replay/robots', '/mhri/replay/driven'
-GATES = '/gates/state'
 
 
 def main():
-    """Replay until shut down; exit with 1 and a sentence if that cannot be."""
+    """Replay until shut down; exit with 1 and the reason if that is impossible."""
     parser = argparse.ArgumentParser(prog='mhri_replay', description=__doc__.split('\n')[0])
     parser.add_argument('path', help="a session's folder, a folder of bags, or a bag")
     path = parser.parse_args(rospy.myargv(sys.argv)[1:]).path
@@ -40,34 +41,28 @@ def main():
     init_node('mhri_replay')
     for problem in kept.bags.problems:
         rospy.logwarn('left out: %s', problem)
-    # What is recorded of robots must not meet those that drive.
-    taken = MasterApi(rospy.get_name(), timeout_s=5.0).call_many(
-        [('lookupService', name) for name in (STOP_SERVICE, TAKE_SERVICE)])
-    if any(taken):
+    # Recorded topics must not reach driven robots.
+    if any(MasterApi(rospy.get_name(), timeout_s=5.0).call_many(
+            [('lookupService', STOP_SERVICE)])):
         sys.exit('mhri drives at {}: replay with a master of its own (utils/host/mhri_run.sh '
                  '--replay)'.format(rosgraph.get_master_uri()))
-    set_parameters(kept.robots, any(found.topic == GATES for found in kept.bags.connections()))
-    Player(kept).start()
-    # The player may be reading when the node ends: its files are closed with the program.
+    set_parameters(kept.robots, any(found.topic == DRIVE for found in kept.bags.connections()))
+    Player(kept, commands_of(kept.robots, types)).start()
+    # The player may be reading when the node ends, so its files are closed with the program.
     rospy.spin()
 
 
 def set_parameters(robots, driven):
-    """Set what a screen asks for before it knows a robot (blocking).
+    """Set the parameters that a screen reads before it finds a robot (blocking).
 
-    :param driven: whether mhri drove them: else nobody misses its word
+    :param driven: whether the recording has the drive's state; if not, a screen does not expect it
     """
     for name, robot in robots.items():
-        parameters = robot.get('parameters')
-        known = {'robot_type': robot.get('type'), 'robot_model': robot.get('model')}
-        rospy.set_param('/' + name, {
-            **(parameters if isinstance(parameters, dict) else {}),
-            **{key: value for key, value in known.items() if isinstance(value, str)}})
+        rospy.set_param('/' + name, parameters_of(robot))
     rospy.set_param(DRIVEN_PARAMETER, driven)
     rospy.set_param(ROBOTS_PARAMETER, {name: number_of(robot) for name, robot in robots.items()})
-    path = resource_path('mux.yaml')
     try:
-        sources = parse_mux_config(read_text(path), path, profile_reader(path)).sources
+        sources = read_mux_config(shipped_path()).sources
     except (ConfigError, OSError) as error:
         rospy.logwarn('the names of the sources are not known: %s', error)
         return
@@ -75,7 +70,21 @@ def set_parameters(robots, driven):
                                       'suspend_service': ''} for source in sources])
 
 
+def parameters_of(robot):
+    """Return the recorded parameters of a robot."""
+    parameters = robot.get('parameters')
+    known = {'robot_type': robot.get('type'), 'robot_model': robot.get('model')}
+    return {**(parameters if isinstance(parameters, dict) else {}),
+            **{key: value for key, value in known.items() if isinstance(value, str)}}
+
+
+def commands_of(robots, types):
+    """Return the topics that commanded the accessories of robots, absolute."""
+    return frozenset(topic for name, robot in robots.items() for topic in accessory_commands(
+        name, resolve_robot_type(types, name, parameters_of(robot))[0]))
+
+
 def number_of(robot):
-    """Return the number of a robot as recorded, 0 if there is none."""
+    """Return the recorded number of a robot, 0 if it has none."""
     number = robot.get('number')
     return number if isinstance(number, int) else 0

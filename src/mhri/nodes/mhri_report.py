@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The executable ``mhri_report``: a page, a map and a film of a recorded session.
+"""The executable ``mhri_report``: a page, a map and a video of a recorded session.
 
-It needs no master, and never writes into the session. The exit status is 0 if all is written, 1 if
-it is no session or something cannot be written, 130 if it was cancelled.
+It needs no master, and never writes into the session. The exit status is 0 if everything is
+written, 1 if the folder is not a session or a file cannot be written, 130 if it was cancelled.
 """
 import argparse
 import os
@@ -16,7 +16,7 @@ from mhri.recording.folder import NotASession
 from mhri.recording.recording import size_text
 from mhri.session.ros.film import Film
 from mhri.session.ros.report_files import folder_for, write_report
-from mhri.session.ros.told import opened, Teller
+from mhri.session.ros.session_reader import opened, ReportBuilder
 
 
 def parse(argv):
@@ -37,27 +37,27 @@ def parse(argv):
 
 
 def make(options):
-    """Write everything, and print what and how long it took."""
+    """Write everything, and print the files and the time it took."""
     began = time.monotonic()
     with opened(options.session) as session:
         folder = options.output or folder_for(session.name, os.environ)
         if os.path.realpath(folder) == os.path.realpath(session.path):
             raise NotASession('{}: a report is not written into its session; --output takes '
                               'another folder'.format(folder))
-        teller = Teller(session)
-        report = teller.read(Progress('report', 's'))
-        told(write_report(report, teller.grid, session.path, folder), began)
+        builder = ReportBuilder(session)
+        report = builder.read(Progress('report', 's'))
+        print_summary(write_report(report, builder.grid, session.path, folder), began)
         if options.film:
             began = time.monotonic()
-            told([Film(session, teller, report).write(
+            print_summary([Film(session, builder, report).write(
                 folder, options.fps, Progress('film', 'frames'))], began)
 
 
 class Progress:
-    """Shows how far something is: on a terminal in place, else a line for every tenth.
+    """Shows the progress of a step: in place on a terminal, else as a line for every tenth.
 
-    :param what: the word before it
-    :param unit: of what it counts
+    :param what: the label
+    :param unit: the unit of the count
     """
 
     def __init__(self, what, unit, stream=None):
@@ -66,7 +66,7 @@ class Progress:
         self._there = -1
 
     def __call__(self, done, count):
-        """Take in how many are done, of how many."""
+        """Show that ``done`` of ``count`` are done."""
         step = 1 if self._stream.isatty() else 10
         percent = 100 * min(done, count) // count // step * step
         if percent != self._there:
@@ -77,8 +77,8 @@ class Progress:
             self._stream.flush()
 
 
-def told(paths, began):
-    """Print what was written, how large it is, and how long it took [s, monotonic]."""
+def print_summary(paths, began):
+    """Print the written files, their sizes, and the time since ``began`` [s, monotonic]."""
     for path in paths:
         size = os.path.getsize(path)
         print('{}  {}'.format(path, size_text(size) if size >= 1000 else '{} bytes'.format(size)))
@@ -90,7 +90,7 @@ def _cancel(*_):
 
 
 def main():
-    """Do what the command line says, and exit."""
+    """Run the command line, and exit."""
     options = parse(sys.argv[1:])
     signal.signal(signal.SIGTERM, _cancel)
     try:

@@ -2,25 +2,22 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The executable ``mhri_session``: runs :class:`mhri.session.ros.session.Session`.
 
-``mhri_session --stand-by`` does so in a process that another one, already loaded, replaces if it is
-killed (:mod:`mhri.graph.ros.stand_by`); it goes on with the recording. Parameters: ``~record``
-(begin to record at once; default false), ``~cameras`` ("all", "stills", or pictures a second;
-default all), ``~cameras_out_of_sight`` (default false), ``~folder`` (default
-``$ROS_HOME/mhri/sessions``),
-``~ring_s`` (30) and ``~ring_mb`` (64), ``~warn_free_mb`` (1000), ``~stop_free_mb`` (256),
-``~bag_s`` (60, at most).
+With ``--stand-by`` its process is replaced by another one, already loaded, if it is killed or
+crashes (:mod:`mhri.graph.ros.stand_by`); that one continues the recording. Parameters:
+``~record`` (start recording at once; default false), ``~cameras`` ("all", "stills", or pictures per
+second; default all), ``~cameras_out_of_sight`` (default false), ``~folder`` (default
+``$ROS_HOME/mhri/sessions``), ``~ring_s`` (30) and ``~ring_mb`` (64), ``~warn_free_mb`` (1000),
+``~stop_free_mb`` (256), ``~bag_s`` (60, at most).
 """
 import sys
 
 import rospy
 
 from mhri.base.config import ConfigError, shown
-from mhri.graph.ros import log, parameters
-from mhri.graph.ros.ending import init_node
+from mhri.graph.ros import parameters
 from mhri.graph.ros.master_watch import MasterWatch
-from mhri.graph.ros.peers import limit_peers
 from mhri.graph.ros.resources import robot_types
-from mhri.graph.ros.rospy_inside import ended_by_hand
+from mhri.graph.ros.shutdown import start_node
 from mhri.graph.ros.stand_by import stand_by
 from mhri.recording.folder import BAG_S, CAMERA_ALL, CAMERA_STILLS
 from mhri.recording.recording import MB, RecordingLimits
@@ -28,22 +25,10 @@ from mhri.session.ros.session import Session, SessionOptions
 from mhri.session.ros.session_node import SessionNode
 
 
-def number(name, default, least):
-    """Return a parameter that is a number.
-
-    :raises ConfigError: it is none, or less than the least
-    """
-    value = rospy.get_param(name, default)
-    if isinstance(value, bool) or not isinstance(value, (int, float)) or not value >= least:
-        raise ConfigError(rospy.resolve_name(name), '', 'expected a number from {:g} up, got '
-                          '{}'.format(least, shown(value)))
-    return float(value)
-
-
 def cameras():
     """Return ``~cameras`` as text.
 
-    :raises ConfigError: it says nothing of cameras
+    :raises ConfigError: the value is invalid
     """
     value = rospy.get_param('~cameras', CAMERA_ALL)
     if value in (CAMERA_ALL, CAMERA_STILLS):
@@ -61,25 +46,24 @@ def cameras():
 def options():
     """Return the :class:`SessionOptions` of the parameters.
 
-    :raises ConfigError: names the parameter that cannot be used
+    :raises ConfigError: a parameter cannot be used; the text names it
     """
-    limits = RecordingLimits(warn_free_bytes=round(number('~warn_free_mb', 1000.0, 0.0) * MB),
-                             stop_free_bytes=round(number('~stop_free_mb', 256.0, 0.0) * MB))
+    warn_mb, stop_mb = (parameters.number(name, default, 0.0) for name, default in (
+        ('~warn_free_mb', 1000.0), ('~stop_free_mb', 256.0)))
+    limits = RecordingLimits(warn_free_bytes=round(warn_mb * MB),
+                             stop_free_bytes=round(stop_mb * MB))
     return SessionOptions(
         cameras(), parameters.flag('~cameras_out_of_sight', False),
-        parameters.text('~folder', ''), number('~ring_s', 30.0, 0.0),
-        number('~ring_mb', 64.0, 0.0),
-        bag_s=min(number('~bag_s', BAG_S, 1.0), BAG_S), limits=limits)
+        parameters.text('~folder', ''), parameters.number('~ring_s', 30.0, 0.0),
+        parameters.number('~ring_mb', 64.0, 0.0),
+        bag_s=min(parameters.number('~bag_s', BAG_S, 1.0), BAG_S), limits=limits)
 
 
 def main():
-    """Run until shut down, and close what is recorded; exit with 1 for a wrong parameter."""
+    """Run until shut down, then close the recording; exit with 1 for an invalid parameter."""
     types, _ = robot_types()
     stand_by('the session')
-    limit_peers()
-    init_node('mhri_session')
-    log.install()
-    by_hand = ended_by_hand()
+    by_hand = start_node('mhri_session')
     try:
         node = SessionNode(Session, types, options(), parameters.flag('~record', False))
     except ConfigError as error:

@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The executable ``mhri_task``: starts a task from a terminal and says how it is getting on.
+"""The executable ``mhri_task``: starts a task from a terminal and prints its progress.
 
-``rosrun mhri mhri_task bot1 goto 2.0 1.5``; ``--help`` says the rest. The exit status is 0 where
-every robot is done, 1 where one is not (with ``--help``: where a lab's task was left out), 2 where
-the words cannot be understood.
+``rosrun mhri mhri_task bot1 goto 2.0 1.5``; see ``--help``. The exit status is 0 if every robot is
+done, 1 if one is not (with ``--help``: if a lab's task was left out), 2 if the command line is
+invalid.
 """
 import sys
 
@@ -22,15 +22,15 @@ CANCEL_S = 3.0
 
 
 class Printer:
-    """Prints what is new of each robot, a line each."""
+    """Prints the news of each robot, one line each."""
 
     def __init__(self):
         self._said = {}
 
     def on_feedback(self, feedback):
-        """Print what was said since the last time, and each other sentence at most once in a row.
+        """Print the lines since the last time, and each other sentence at most once in a row.
 
-        Whatever is left is said once for each metre or change of state.
+        The remaining distance is printed once per metre or change of state.
         """
         for robot in feedback.robots:
             lines, before = self._said.get(robot.robot, (0, None))
@@ -42,7 +42,7 @@ class Printer:
             self._said[robot.robot] = (len(robot.said), now)
 
     def on_result(self, result):
-        """Print how it ended; return whether every robot is done."""
+        """Print the result; return whether every robot is done."""
         for robot in result.robots:
             lines, _ = self._said.get(robot.robot, (0, None))
             for line in robot.said[lines:]:
@@ -54,7 +54,7 @@ class Printer:
 
 
 def wait(client):
-    """Wait for the end; cancel on Ctrl-C. Return whether there was an end."""
+    """Wait for the result; cancel on Ctrl-C. Return whether there was a result."""
     connected = False
     while not client.wait_for_result(rospy.Duration(0.2)):
         here = client.action_client.pub_goal.get_num_connections() > 0
@@ -68,7 +68,7 @@ def run(robots, key, parameters):
     """Run one task to its end; return the exit status."""
     client = actionlib.SimpleActionClient('/mhri_tasks/run', RunTaskAction)
     if not client.wait_for_server(rospy.Duration(NODE_S)):
-        print('mhri_tasks does not run: start mhri.launch', file=sys.stderr)
+        print('mhri_tasks is not running: start mhri.launch', file=sys.stderr)
         return 1
     printer = Printer()
     client.send_goal(RunTaskGoal(key, robots, parameters), feedback_cb=printer.on_feedback)
@@ -78,7 +78,7 @@ def run(robots, key, parameters):
         client.cancel_goal()
         ended = client.wait_for_result(rospy.Duration(CANCEL_S))
     if not ended:
-        print('mhri_tasks has ended: the robots stand', file=sys.stderr)
+        print('mhri_tasks has ended; its robots have stopped', file=sys.stderr)
         return 1
     result = client.get_result()
     if not result.robots:
@@ -88,7 +88,7 @@ def run(robots, key, parameters):
 
 
 def main():
-    """Read the words, run the task, and exit."""
+    """Parse the command line, run the task, and exit."""
     words = rospy.myargv(sys.argv)[1:]
     kinds, errors = task_kinds()
     for error in errors:

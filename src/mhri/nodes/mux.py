@@ -2,34 +2,39 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The executable ``mux``: reads its parameters and runs :class:`mhri.driving.ros.mux.Mux`.
 
-``mux --stand-by`` does so in a process that another one, already loaded, replaces if it is
-killed (:mod:`mhri.graph.ros.stand_by`).
+A standby process, already loaded, supervises it (:mod:`mhri.graph.ros.stand_by`): if the drive is
+killed, crashes or hangs, that process sends a zero to every robot at once, and starts the next
+drive.
 """
 from dataclasses import replace
 import gc
+import os
 import sys
 
 import rosgraph
 import rospy
 
 from mhri.base.config import ConfigError
-from mhri.driving.ros.mux import Mux, STOP_PARAMETER
-from mhri.driving.ros.mux_takeover import end_other_muxes
-from mhri.driving.sources import enabling_problem, parse_mux_config
-from mhri.graph.ros import log, parameters
-from mhri.graph.ros.ending import init_node
+from mhri.driving.io.stop_file import StopFile
+from mhri.driving.ros.journal_writer import JournalWriter
+from mhri.driving.ros.mux import KEPT, Mux
+from mhri.driving.ros.mux_file import read_mux_config, shipped_path
+from mhri.driving.ros.mux_takeover import end_other_muxes, has_address_of_last
+from mhri.driving.sources import enabling_problem
+from mhri.graph.ros import parameters
 from mhri.graph.ros.master_api import MasterApi, MasterError
-from mhri.graph.ros.peers import limit_peers
-from mhri.graph.ros.resources import profile_reader, read_text, resource_path
-from mhri.graph.ros.stand_by import stand_by
+from mhri.graph.ros.resources import robot_types
+from mhri.graph.ros.shutdown import start_node
+from mhri.graph.ros.stand_by import DRIVE_HUNG_S, Memory, stand_by
+from mhri.recording.recording import ros_home
 
 
 def config_path(argv):
     """Return ``~config`` of a node that does not exist yet, or ''.
 
-    The file is read before the node takes its name: a mistake in it must not end the running mux.
+    The file is read before the node takes its name: an error in it must not end the running mux.
 
-    :raises MasterError: no master answers
+    :raises MasterError: the master does not answer
     """
     own = [word.split(':=', 1)[1] for word in argv if word.startswith('_config:=')]
     if own:
@@ -41,9 +46,9 @@ def config_path(argv):
 
 
 def adjusted(config):
-    """Return the configuration with the node's parameters in place of the file's values.
+    """Return the configuration with the node's parameters replacing the file's values.
 
-    :raises ConfigError: a parameter that cannot be used
+    :raises ConfigError: a parameter cannot be used
     """
     enabling = parameters.text('~enabling', config.enabling or '')
     problem = enabling_problem(config.sources, enabling)
@@ -55,26 +60,36 @@ def adjusted(config):
 
 
 def main():
-    """Run until shut down; exit with 1 if the sources' file cannot be used."""
-    beat = stand_by('the mux', beats=True)
+    """Run until shut down; the last command to every robot is a zero.
+
+    Exit with 1 if the sources' file cannot be used, and after ``rosnode kill``, so that it is
+    restarted: robots must not be left without a drive.
+    """
+    # Robots that were stopped alone stay stopped even if they are no longer in the list.
+    memory = Memory(fallback={KEPT: {'stop': True}})
+    undertaker = stand_by('the mux', DRIVE_HUNG_S, memory, always=True)
     try:
-        path = config_path(sys.argv) or resource_path('mux.yaml')
-        config = parse_mux_config(read_text(path), path, profile_reader(path))
+        config = read_mux_config(config_path(sys.argv) or shipped_path())
     except (ConfigError, OSError, MasterError) as error:
         sys.exit('the mux cannot start: {}'.format(error))
-    limit_peers()
-    init_node('mux')
-    rospy.on_shutdown(beat.end)
-    log.install()
-    stopped = bool(rospy.get_param(STOP_PARAMETER, False))
+    by_hand = start_node('mux', disable_rostime=True)
     try:
-        config = adjusted(config)
+        config, journal_path = adjusted(config), parameters.text('~journal', '')
     except ConfigError as error:
         sys.exit('the mux cannot start: {}'.format(error))
+    types, errors = robot_types()
+    stop_file = StopFile(os.path.join(ros_home(os.environ), 'mhri', 'stop'),
+                         rosgraph.get_master_uri())
+    # After the configuration: what recalls the memory and fails, again and again, discards it.
+    if has_address_of_last(memory):
+        sys.exit('the mux has the address of the last one; it is started once more')
     end_other_muxes()
-    Mux(config, beat).start(stopped)
-    if stopped:
-        rospy.logwarn('stop-all was in force when the last mux ended: it still is')
-    # What is loaded by now stays: searching it would delay a command.
+    journal = JournalWriter(journal_path) if journal_path else None
+    Mux(config, types, memory, stop_file, undertaker, journal).start()
+    for error in errors:
+        rospy.logwarn('robot type left out: %s', error)
+    # The objects loaded by now are permanent: collecting garbage among them would delay a command.
     gc.freeze()
     rospy.spin()
+    if by_hand():
+        sys.exit('the mux was ended by rosnode kill')

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The executable ``panel``: in rqt if that is installed, else in a window of its own."""
+"""The executable ``panel``: runs in rqt if that is installed, else in a separate window."""
 import argparse
 import os
 import shutil
@@ -25,7 +25,9 @@ def parse(argv):
     parser.add_argument('--settings', help='JSON file for the settings, instead of the user\'s own')
     parser.add_argument('--fresh', action='store_true',
                         help='begin without the saved settings but for the numbers of robots, and '
-                             'keep them until robots, mode or limits are changed')
+                             'keep them until robots or mode are changed')
+    parser.add_argument('--simulated', action='store_true',
+                        help='the robots are simulated: settings of their own, without robots')
     parser.add_argument('--replay', help='show the replay of this session or bag; it is played by '
                                          'mhri_replay, on a master of its own')
     parser.add_argument('--demo', action='store_true',
@@ -45,18 +47,21 @@ def main():
         if not shutil.which('rqt'):
             sys.exit('the panel cannot start: rqt is not installed; leave out gui:=rqt')
         remappings = [arg for arg in sys.argv[1:] if ':=' in arg]
-        extra = ['--args', '--robots', options.robots] if options.robots else []
+        extra = ['--robots', options.robots] * bool(options.robots) + [
+            flag for flag in ('--fresh', '--simulated') if getattr(options, flag[2:])]
+        extra = ['--args', *extra] * bool(extra)
         os.execvp('rqt', ['rqt', '--standalone', PLUGIN] + remappings + extra)
-    # The screen logs on the thread that draws, and may wait for a master for hours.
+    # The screen logs on the GUI thread, and may wait for a master for hours.
     log.install(lives_on=True)
     app = QApplication(sys.argv[:1])
     if options.replay:
         sys.exit(replay(app, options.replay))
-    program = Standalone(sys.argv, options.settings, remember=not options.demo)
+    program = Standalone(sys.argv, options.settings, remember=not options.demo,
+                         simulated=options.simulated)
     if not options.demo:
         program.restore(afresh=options.fresh)
     program.window.show()
-    program.host.start(options.robots.split(), options.select.split())
+    program.presenter.start(options.robots.split(), options.select.split())
     if options.fresh and not options.demo:
         program.begin_afresh()
     demo = start_demo(program, options) if options.demo else None
@@ -65,7 +70,7 @@ def main():
 
 
 def replay(app, path):
-    """Show a replay until its window is closed; return the exit status, or why not."""
+    """Show a replay until its window is closed; return the exit status, or the error text."""
     from mhri.recording.folder import NotASession
     from mhri.standalone import make_replay
     try:
@@ -73,7 +78,7 @@ def replay(app, path):
     except NotASession as error:
         return 'cannot show the replay: {}'.format(error)
     program.window.showMaximized()
-    program.host.start()
+    program.presenter.start()
     program.run(app)
     return 0
 

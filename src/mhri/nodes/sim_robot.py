@@ -2,12 +2,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The executable ``sim_robot``: a simulated robot in the namespace it is started in.
 
-Parameters: ``robot_type`` and ``robot_model`` of the robot's namespace (its template), ``~plan``
-(path, default ``resource/sim/plan.yaml``), ``~x``, ``~y`` [m], ``~yaw`` [rad] (default: the plan's
-start place for the number at the end of the name), ``~depth_format`` (``png`` or
-``rvl``, of compressedDepth), ``~mocap`` (true: a motion capture system reports its pose),
-``~placed`` (true: tf has the place of its odometry in the frame ``map``), ``~map`` (true: it
-publishes the plan as ``/map``; one robot does), ``~seed`` (whole number; default: random).
+Parameters: ``robot_type`` and ``robot_model`` of the robot's namespace (its template),
+``~accessories`` (true: those of ``mhri/accessories`` of its namespace that the simulator knows are
+simulated as well, see :mod:`mhri.sim.ros.tools_node`), ``~plan`` (path, default
+``resource/sim/plan.yaml``), ``~x``, ``~y`` [m], ``~yaw`` [rad] (default: the plan's start pose for
+the number at the end of the name), ``~depth_format`` (``png`` or ``rvl``, of compressedDepth),
+``~mocap`` (true: a motion capture system reports its pose), ``~placed`` (true: tf has the pose of
+its odometry in the frame ``map``), ``~map`` (true: it publishes the plan as ``/map``; only one
+robot should), ``~seed`` (integer; default: random).
 """
 import random
 import re
@@ -22,11 +24,10 @@ import rospy
 
 from mhri.base.config import ConfigError, short, shown
 from mhri.base.robot_types import resolve_robot_type
-from mhri.graph.ros import log, parameters
-from mhri.graph.ros.ending import init_node
+from mhri.graph.ros import parameters
 from mhri.graph.ros.master_watch import MasterWatch
-from mhri.graph.ros.peers import limit_peers
 from mhri.graph.ros.resources import read_resource, read_text, resource_path, robot_types
+from mhri.graph.ros.shutdown import start_node
 from mhri.map.ros.map_source import publish_map
 from mhri.sensors.readings import no_return_of
 from mhri.sim.body import Body, Bumper, parse_bodies
@@ -35,18 +36,20 @@ from mhri.sim.plan import parse_plan
 from mhri.sim.ros.camera_node import DEPTH_FORMATS, SimCamera
 from mhri.sim.ros.fault_node import Failing
 from mhri.sim.ros.node import SimRobot
+from mhri.sim.ros.tools_node import SimTools
 from mhri.sim.sensors import ImuSensor, Laser
 from mhri.sim.world import World, world_path, WorldFull
 
 
-# No building is this far away [m], and no heading has this many turns [rad]; NaN is refused, too.
+ACCESSORIES = 'mhri/accessories'
+# Bounds of a start pose [m, rad], beyond any building and heading; NaN is refused, too.
 FARTHEST = 1000.0
 
 
 def start_pose(plan, name, radius_m):
-    """Return (x, y, yaw) [m, m, rad]: the given parameters, else a start place of the plan.
+    """Return (x, y, yaw) [m, m, rad]: the given parameters, else a start pose of the plan.
 
-    :raises ConfigError: one is not a number, or the body would stand in a wall or a landmark
+    :raises ConfigError: one is not a number, or the body would overlap a wall or a landmark
     """
     number = re.search(r'(\d+)\Z', name)
     pose = list(plan.starts[(int(number.group(1)) - 1 if number else 0) % len(plan.starts)])
@@ -66,7 +69,7 @@ def start_pose(plan, name, radius_m):
 
 
 def building_key(plan):
-    """Return what identifies a building to its robots: the master and the plan.
+    """Return the key that identifies a building to its robots: the master and the plan.
 
     One master has several addresses (``localhost``, the host's name, each of its interfaces).
     """
@@ -78,7 +81,7 @@ def building_key(plan):
 def body_type(name, template):
     """Return the :class:`BodyType` of a template and its model.
 
-    :raises ConfigError: there is none
+    :raises ConfigError: the template or the model has no body type
     """
     bodies = parse_bodies(read_resource('sim', 'bodies.yaml'), resource_path('sim', 'bodies.yaml'))
     key = template.name if template.model is None else '{}_{}'.format(template.name, template.model)
@@ -89,7 +92,7 @@ def body_type(name, template):
 
 
 def seed_of():
-    """Return the parameter ``~seed``, a whole number from 0 up; None if there is none.
+    """Return the parameter ``~seed``, an integer >= 0; None if it is not set.
 
     :raises ConfigError: it is not such a number
     """
@@ -100,23 +103,11 @@ def seed_of():
     return seed
 
 
-def depth_format():
-    """Return the parameter ``~depth_format``.
-
-    :raises ConfigError: it is not a known format
-    """
-    value = parameters.text('~depth_format', DEPTH_FORMATS[0])
-    if value not in DEPTH_FORMATS:
-        raise ConfigError(rospy.resolve_name('~depth_format'), '', 'expected {}, got {}'.format(
-            ' or '.join(DEPTH_FORMATS), shown(value)))
-    return value
-
-
 def build(name, of_robot):
-    """Return the :class:`SimRobot` that the parameters of a robot's namespace describe.
+    """Create the :class:`SimRobot` described by the parameters of a robot's namespace.
 
     :raises ConfigError: an unknown type or model, a plan or a start place that cannot be used
-    :raises WorldFull: there are too many robots
+    :raises WorldFull: the building has too many robots
     :raises OSError: a file cannot be read
     """
     template, errors = resolve_robot_type(robot_types()[0], name, of_robot)
@@ -136,28 +127,31 @@ def build(name, of_robot):
                 chance)
     failing = Failing(name, template, body, shared, plan.distance)
     failing.serve()
+    tools = SimTools(name, template, failing, plan.gas)
     SimCamera(name, template, plan, lambda: (body.x, body.y, body.yaw), world.others,
-              depth_format(), failing).start()
+              parameters.choice('~depth_format', DEPTH_FORMATS), failing, tools).start()
     if parameters.flag('~map', False):
         publish_map(grid_of_plan(plan))
     return SimRobot(name, template, body, ImuSensor(chance), laser, world, plan.discs(),
-                    failing, parameters.flag('~mocap', False), parameters.flag('~placed', False))
+                    failing, tools, parameters.flag('~mocap', False),
+                    parameters.flag('~placed', False))
 
 
 def main():
     """Run until shut down; exit with 1 and a reason if the robot cannot be built."""
-    limit_peers()
-    init_node('base')
-    log.install()
+    start_node('base')
     name = rospy.get_namespace().strip('/')
     if not name or '/' in name:
         rospy.logfatal('start a simulated robot inside a group named after it: '
                        'roslaunch mhri turtlebot.launch name:=bot1')
         sys.exit(1)
-    of_robot = {key: rospy.get_param(key) for key in ('robot_type', 'robot_model')
-                if rospy.has_param(key)}
     try:
-        robot = build(name, of_robot)
+        # Those of a lab have drivers of their own.
+        keys = ('robot_type', 'robot_model') + (
+            (ACCESSORIES,) if parameters.flag('~accessories', False) else ())
+        of_robot = {key: rospy.get_param(key) for key in keys if rospy.has_param(key)}
+        robot = build(name, dict(of_robot, mhri={'accessories': of_robot[ACCESSORIES]})
+                      if ACCESSORIES in of_robot else of_robot)
     except (ConfigError, WorldFull, OSError, ValueError) as error:
         rospy.logfatal('%s cannot be simulated: %s', name, short(error))
         sys.exit(1)

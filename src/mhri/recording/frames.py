@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Messages cut out of the stream of bytes of a TCPROS connection."""
+"""Splits the byte stream of a TCPROS connection into messages."""
 import struct
 from typing import List, Sequence
 
@@ -8,21 +8,21 @@ _UNPACK_U32 = struct.Struct('<I').unpack_from
 
 
 class FrameSplitter:
-    """Cuts the bytes of one TCPROS connection into frames: a length (4 bytes) and a message.
+    """Splits the bytes of one TCPROS connection into frames: a length (4 bytes) and a message.
 
-    ``wanted`` is how many bytes are still missing of the present message, 0 if unknown.
+    ``wanted`` is the number of missing bytes of the present message, 0 if unknown.
     """
 
-    LONGEST = 10 ** 9
+    MAX_BYTES = 10 ** 9
 
     def __init__(self) -> None:
         self.wanted = 0
         self._parts: List[bytes] = []
 
     def split(self, data: bytes) -> Sequence[bytes]:
-        """Return the frames that are whole with these bytes.
+        """Return the frames completed by these bytes.
 
-        :raises ValueError: a length that no message has (the limit of roscpp, 1 GB)
+        :raises ValueError: a length is over the limit of roscpp, 1 GB
         """
         if self._parts:
             if self.wanted > len(data):
@@ -43,7 +43,7 @@ class FrameSplitter:
         start = 0
         while length - start >= 4:
             size = _UNPACK_U32(data, start)[0]
-            if size > self.LONGEST:
+            if size > self.MAX_BYTES:
                 raise ValueError('a message of {} bytes'.format(size))
             end = start + 4 + size
             if end > length:

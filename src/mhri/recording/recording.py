@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What to record, under which name, and what to say about it."""
+"""The topics, names and states of a recording."""
 from collections import deque
 from dataclasses import dataclass
 from datetime import datetime
@@ -10,39 +10,42 @@ from typing import Callable, Collection, Deque, Mapping, Match, Optional, Tuple
 from mhri.base.names import topic_of
 from mhri.base.robot_types import RobotType
 
-# States of a recording; each is reached from the one before, the last two end it.
+# States of a recording, in order; the last two end it.
 OFF = 'off'              # not started
 RECORDING = 'recording'  # a file is open (also while the last messages are being written)
-ENDED = 'ended'          # stopped by the operator, the file is closed whole
-FAILED = 'failed'        # never began, or stopped by itself; the note says why and what there is
+ENDED = 'ended'          # stopped by the operator, the file is complete and closed
+FAILED = 'failed'        # never started, or stopped by itself; the note has details
 
 MB = 10 ** 6
 ACTIVE = '.active'
 _VARIABLE = re.compile(r'\$(?:([A-Za-z_]\w*)|\{([A-Za-z_]\w*)\})', re.ASCII)
-# Folders of the system that never take files.
+# System folders in which no files are written.
 _NO_FILES_IN = ('/dev', '/proc', '/sys')
+# Simulated time begins near 0; a ROS time before this one (2001) is no time of day [s].
+_FIRST_DATE_S = 1e9
 
-#: what an operator may choose: (key, label); the IMU is always recorded
+#: extras to choose from: (key, label); the IMU is always recorded
 CHOICES = (('odometry', 'Odometry'), ('commands', 'Commands'), ('scan', 'Laser scan'),
            ('rgb', 'RGB camera (compressed)'), ('depth', 'Depth camera (compressed)'))
-# Below a robot's namespace: where commands to a robot with a guard go.
+# Topic of the commands to a robot with a guard, below its namespace.
 GUARD_COMMAND = 'mhri_guard/command'
 _COMMAND_TOPICS = ('/robot_controller/twist', '/robot_controller/robot_select',
                    '/robot_controller/stop_all', '/mux/mode')
 
 
 class PathRefused(Exception):
-    """A path that cannot take a recording; the text tells the operator why."""
+    """A path cannot be used for a recording; the text is the reason, for the operator."""
 
 
 @dataclass(frozen=True)
 class RecordingStatus:
-    """A recording as its row shows it.
+    """The state of a recording for its row.
 
-    ``path`` is that of the file as it is or will be called when it ends ('' before the start),
-    ``duration_s`` counts from the opening of the file, ``messages`` and ``bytes`` are received
-    (written or about to be), ``rate_hz`` is that of the last second or so. ``note`` is for
-    the operator, '' if there is nothing to say; ``attention`` is true if it is a warning.
+    ``path`` is the final path of the file ('' before the start), ``duration_s`` counts from the
+    opening of the file, ``messages`` and ``bytes`` are the totals received (written or queued),
+    ``rate_hz`` is the rate of the last second or so. ``note`` is a sentence for the operator or
+    ''; ``attention`` is true if it is a warning. ``elsewhere`` is the reason why the file is not
+    at the requested path, '' if it is.
     """
 
     state: str = OFF
@@ -53,11 +56,19 @@ class RecordingStatus:
     rate_hz: float = 0.0
     note: str = ''
     attention: bool = False
+    elsewhere: str = ''
+
+    @property
+    def words(self) -> str:
+        """The note, after the reason why the file is elsewhere."""
+        moved = '{} elsewhere, {}'.format('saved' if self.state == ENDED else 'saving',
+                                          self.elsewhere) if self.elsewhere else ''
+        return '; '.join(filter(None, (moved, self.note)))
 
 
 @dataclass(frozen=True)
 class RecordingLimits:
-    """When a recording warns and stops, and how much a killed program may lose.
+    """Limits for warning, for stopping, and for the data lost with a killed program.
 
     Free space of the disk and memory of the queue in bytes, times in seconds.
     """
@@ -72,7 +83,7 @@ class RecordingLimits:
 
 
 class RateMeter:
-    """Messages per second over the last second or two, from a count that is read often."""
+    """Messages per second over the last second or two, from a frequently read counter."""
 
     def __init__(self) -> None:
         self._seen: Deque[Tuple[float, int]] = deque(maxlen=40)
@@ -90,14 +101,14 @@ class RateMeter:
 def topics_of(robot: str, robot_type: RobotType, choices: Collection[str] = ()) -> Tuple[str, ...]:
     """Return the topics to record of a robot, absolute, without repetition.
 
-    Every candidate in a template's list is taken: one that does not exist does no harm. Cameras are
+    Every candidate in a template's list is included; missing topics do no harm. Cameras are
     recorded compressed, with their ``camera_info``; topics without a compressed form can be added
-    by name. Commands are recorded on the host and at the robot; a mere listener does not affect the
-    gates.
+    by name. Commands are recorded both on the host and at the robot, which is safe since the
+    recorder only listens.
 
     :param robot_type: :class:`mhri.base.robot_types.RobotType`
     :param choices: keys of ``CHOICES``
-    :raises KeyError: a choice that does not exist
+    :raises KeyError: a choice does not exist
     """
     unknown = set(choices) - {key for key, _ in CHOICES}
     if unknown:
@@ -134,7 +145,7 @@ def expand(text: str, env: Mapping[str, str]) -> str:
     """Return a path with ``~``, ``$NAME`` and ``${NAME}`` replaced.
 
     :param env: {name: value} of the environment
-    :raises PathRefused: a variable that is not set; a home folder of somebody else
+    :raises PathRefused: a variable is not set, or it is the home folder of another user
     """
     def value(match: Match[str]) -> str:
         name = match.group(1) or match.group(2)
@@ -152,14 +163,14 @@ def expand(text: str, env: Mapping[str, str]) -> str:
 
 def split_path(text: str, env: Mapping[str, str],
                is_folder: Callable[[str], bool]) -> Tuple[str, str]:
-    """Return (folder, name) of what the operator typed; the name is '' if only a folder is.
+    """Return (folder, name) of a typed path; the name is '' if the path is a folder.
 
     A path that is a folder, or ends in a slash, is a folder; anything else is a file, to which
     ``.bag`` is added if missing. Relative paths start at the folder of ROS. An empty text is the
     folder of ROS.
 
-    :param is_folder: function from a path to True if a folder of this name exists
-    :raises PathRefused: there cannot be such a file
+    :param is_folder: function that returns whether a path is an existing folder
+    :raises PathRefused: such a file is impossible
     """
     text = text.strip()
     if '\0' in text:
@@ -185,7 +196,7 @@ def split_path(text: str, env: Mapping[str, str],
 
 
 def system_folder(real_folder: str) -> Optional[str]:
-    """Return the system folder that a (real) folder is in, or None if it may take files."""
+    """Return the system folder that a (real) folder is in, None if files may be written to it."""
     for top in _NO_FILES_IN:
         if real_folder == top or real_folder.startswith(top + '/'):
             return top
@@ -193,30 +204,28 @@ def system_folder(real_folder: str) -> Optional[str]:
 
 
 def numbered(name: str, number: int) -> str:
-    """Return the name, or for 1, 2, ... with ``-1``, ``-2``, ... before its ending."""
+    """Return the name, for numbers above 0 with ``-<number>`` before its extension."""
     return name if not number else '{}-{}.bag'.format(name[:-len('.bag')], number)
 
 
-def fallback_note(text: str, reason: str, path: str) -> str:
-    """Return a note that a path could not be used, and what is used instead."""
-    shown = ''.join(char if char.isprintable() else '?' for char in text.strip())
-    if len(shown) > 80:
-        shown = shown[:77] + '...'
-    return 'cannot write to "{}": {}; saving to {} instead'.format(shown, reason, path)
+def duration_text(seconds: float) -> str:
+    """Return a duration as "00:12", from an hour on as "1:00:12"; negative ones count as zero."""
+    minutes, rest = divmod(int(max(0.0, seconds) + 1e-6), 60)
+    hours, minutes = divmod(minutes, 60)
+    return '{}:{:02d}:{:02d}'.format(hours, minutes, rest) if hours else \
+        '{:02d}:{:02d}'.format(minutes, rest)
 
 
-_FALLBACK = re.compile(r'cannot write to ".*": (.*); saving to /.* instead(?:; )?', re.DOTALL)
+def is_simulated(ros_s: float) -> bool:
+    """Return whether a ROS time [s] is a simulated one and so no time of day; so is 0: unknown."""
+    return ros_s < _FIRST_DATE_S
 
 
-def read_fallback(note: str) -> Tuple[str, str]:
-    """Return (why the path could not be used, the rest of a note); ('', note) if it could.
-
-    The inverse of :func:`fallback_note`, for a caller that shows the path elsewhere.
-    """
-    found = _FALLBACK.search(note)
-    if found is None:
-        return '', note
-    return found.group(1), note[:found.start()] + note[found.end():]
+def moment_text(ros_s: float) -> str:
+    """Return a ROS time [s] as a local time, "14:02:06"; a simulated one as a duration, "00:12"."""
+    if is_simulated(ros_s):
+        return duration_text(ros_s)
+    return datetime.fromtimestamp(ros_s).strftime('%H:%M:%S')
 
 
 def size_text(count: float) -> str:
@@ -228,10 +237,10 @@ def size_text(count: float) -> str:
 
 def warning_of(limits: RecordingLimits, free_bytes: Optional[int],
                queue_bytes: int) -> Tuple[str, bool]:
-    """Return (words about the disk, whether to stop); ('', False) while all is well.
+    """Return (warning about the disk, whether to stop); ('', False) while all is well.
 
-    :param free_bytes: space left on the disk, None if unknown
-    :param queue_bytes: received but not yet written
+    :param free_bytes: free space of the disk, None if unknown
+    :param queue_bytes: size of the messages received but not yet written
     """
     if queue_bytes >= limits.stop_queue_bytes:
         return 'the disk is too slow: {} wait to be written'.format(size_text(queue_bytes)), True

@@ -1,3 +1,3 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The screen of a session that is replayed."""
+"""The screen that replays a session."""

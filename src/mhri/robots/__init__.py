@@ -1,3 +1,3 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Which robots there are, and what they send."""
+"""The robots: discovery, links, streams and views."""

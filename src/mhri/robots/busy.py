@@ -1,13 +1,13 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What is asked before a robot that is in use is removed, and before the screen is closed."""
+"""Questions before removing a robot in use, and before closing the screen."""
 from typing import Iterable, List
 
 from mhri.base.views import RobotView
 
 
 def remove_question(robot: RobotView) -> str:
-    """Return what to ask before a robot is taken off the list; '' where nobody would miss it.
+    """Return the question before a robot is removed from the list; '' if it is not in use.
 
     :param robot: :class:`mhri.base.views.RobotView`
     """
@@ -18,7 +18,7 @@ def remove_question(robot: RobotView) -> str:
 
 
 def close_question(robots: Iterable[RobotView], session: bool = False) -> str:
-    """Return what to ask before the screen is closed; '' while nothing drives or records.
+    """Return the question before the screen is closed; '' if nothing drives or records.
 
     :param session: whether the whole session is recorded
     """
@@ -31,7 +31,7 @@ def close_question(robots: Iterable[RobotView], session: bool = False) -> str:
 
 
 def _part(names: List[str], use: str) -> List[str]:
-    """Return a clause as a list of one, or nothing where there are no names."""
+    """Return a clause about names in a list, [] without names."""
     if not names:
         return []
     who = names[0] if len(names) == 1 else '{} robots'.format(len(names)) if len(names) > 3 \

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Which parts of a ROS graph are robots: the rules of "Look for Connected Bots"."""
+"""Decides which parts of a ROS graph are robots, for "Look for Connected Bots"."""
 from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
 from functools import partial
@@ -13,7 +13,7 @@ from mhri.base.robot_types import RobotType, Seen
 
 # The master's getSystemState: publishers, subscribers and services, each with their nodes.
 SystemState = Sequence[Iterable[Tuple[str, Sequence[str]]]]
-# Of a nested dict of parameters.
+# A nested dict of parameters.
 Parameters = Mapping[str, object]
 Types = Mapping[str, RobotType]
 
@@ -28,25 +28,25 @@ ROOT_PARAMETERS = ('robot_type', 'robot_model')
 
 @dataclass(frozen=True)
 class IgnoreList:
-    """What is never a robot: shell patterns (``*``, ``?``) for node names and namespaces."""
+    """Names that are never robots: shell patterns (``*``, ``?``) for nodes and namespaces."""
 
     nodes: Tuple[str, ...] = ()
     namespaces: Tuple[str, ...] = ()
 
     def covers(self, node: str, namespace: str) -> bool:
-        """Tell whether a node (with leading slash) or its namespace (without) is ignored."""
+        """Return whether a node (with leading slash) or its namespace (without) is ignored."""
         return (any(fnmatchcase(node, pattern) for pattern in self.nodes)
                 or any(fnmatchcase(namespace, pattern) for pattern in self.namespaces))
 
 
 @dataclass(frozen=True)
 class Candidate:
-    """What looks like a robot.
+    """A candidate for a robot.
 
     ``robot_type`` is its parameter, None if it has none; ``nodes`` are the nodes registered under
-    it, empty if only its parameters are left; ``problem`` says why it cannot be added. ``seen`` is
-    what else the graph says about it. ``part`` is true for a namespace that counts as a part of the
-    robot without a namespace while that robot lives.
+    it, empty if only its parameters are left; ``problem`` says why it cannot be added. ``seen``
+    holds the other facts of the graph about it. ``part`` is true for a namespace that counts as a
+    part of the robot without a namespace while that robot is alive.
     """
 
     name: str
@@ -87,8 +87,8 @@ def root_name(parameters: Parameters) -> str:
 def parameters_of(name: str, parameters: Parameters, at_root: bool = False) -> Dict[str, object]:
     """Return the parameters of a robot as a nested dict.
 
-    A robot without a namespace has ``/robot_type`` and ``/robot_model``; but
-    overrides of its template are below its name, since ``/mhri`` belongs to the panel.
+    A robot without a namespace has ``/robot_type`` and ``/robot_model``, but the overrides of its
+    template are below its name, since ``/mhri`` belongs to the panel.
 
     :param parameters: all parameters as one nested dict
     """
@@ -108,8 +108,8 @@ def find_candidates(system_state: SystemState, parameters: Parameters, ignore: I
     A namespace is a robot if it has a ``robot_type``, or nodes under it that are neither ignored
     nor under a known robot, or velocity topics that a node outside of it reads (a simulator). The
     root is a robot, named :func:`root_name`, if it has a ``robot_type`` or velocity topics;
-    namespaces without either then count as its parts. Every robot of a node with several robots
-    (``instance`` of a type) is one robot.
+    namespaces without either then count as its parts. A node with several robots (``instance`` of
+    a type) yields each of them.
 
     :param system_state: publishers, subscribers, services as the master lists them
     :param parameters: all parameters as one nested dict
@@ -117,7 +117,7 @@ def find_candidates(system_state: SystemState, parameters: Parameters, ignore: I
     :param known: names of the robots already in the list; they are left out
     :param topic_types: pairs (topic, ROS type) as the master lists them
     :param types: {name: RobotType}, used to recognise robots and their velocity topics
-    :param with_parts: include those that count as parts of the robot without a namespace
+    :param with_parts: include the parts of the robot without a namespace
     """
     survey = Survey(system_state, parameters, ignore, topic_types, types or {})
     return [item for item in survey.candidates() if not known_by_name(item, known, types or {})
@@ -125,7 +125,7 @@ def find_candidates(system_state: SystemState, parameters: Parameters, ignore: I
 
 
 def known_by_name(candidate: Candidate, known: Container[str], types: Types) -> bool:
-    """Tell whether a robot is already in the list, by its name or its instance's name."""
+    """Return whether a robot is already in the list, by its name or its instance's name."""
     kind = None if candidate.seen.kind is None else types.get(candidate.seen.kind)
     return candidate.name in known or bool(
         kind and kind.instance and candidate.seen.at_root and kind.instance in known)
@@ -136,7 +136,7 @@ def named_instances(system_state: SystemState, parameters: Parameters, ignore: I
     """Return {name: :class:`Seen`} of every robot at the root with siblings in its node.
 
     Unlike :func:`find_candidates`, this gives the first robot its own name, too, so that it can be
-    added by hand. Parameters as there.
+    added by hand. The parameters are the same.
     """
     survey = Survey(system_state, parameters, ignore, topic_types, types)
     return {place.lstrip('/'): Seen(False, kind.name, None, place)
@@ -144,7 +144,7 @@ def named_instances(system_state: SystemState, parameters: Parameters, ignore: I
 
 
 class Survey:
-    """One look at a whole graph; parameters as for :func:`find_candidates`."""
+    """A survey of a whole graph; parameters as for :func:`find_candidates`."""
 
     def __init__(self, system_state: SystemState, parameters: Parameters, ignore: IgnoreList,
                  topic_types: Iterable[Tuple[str, str]], types: Types) -> None:
@@ -164,14 +164,14 @@ class Survey:
             if not self._ignored(node) and not self._is_nested(node):
                 self._members.setdefault(namespace, []).append(node)
         self._root_nodes = set(self._members.pop(ROOT, ()))
-        #: {place of a robot of several, e.g. ``/turtle2``: (RobotType, its nodes)}
+        #: {place of one robot of a node with several, e.g. ``/turtle2``: (RobotType, its nodes)}
         self.instances = dict(self._find_instances())
         self._commands: Dict[str, List[str]] = {}
         self._listeners: Dict[str, Set[str]] = {}
         self._share_out_commands()
 
     def _ignored(self, name: str) -> bool:
-        """Tell whether a node or a topic is ignored, by its name or its namespace.
+        """Return whether a node or a topic is ignored, by its name or its namespace.
 
         A namespace with a ``robot_type`` may have an otherwise ignored name: then only the nodes
         named by a pattern of two segments are ignored.
@@ -213,7 +213,7 @@ class Survey:
                         self._subscribers.get(command) or self._publishers[topic])))
 
     def _siblings(self) -> Iterator[Tuple[str, RobotType, Tuple[str, ...]]]:
-        """Yield (place, RobotType, nodes) of the instances beside the template's own."""
+        """Yield (place, RobotType, nodes) of all instances except the template's own."""
         for place, (kind, nodes) in sorted(self.instances.items()):
             if place.rpartition('/')[2] != kind.instance:
                 yield place, kind, nodes
@@ -283,7 +283,7 @@ class Survey:
                          self._seen(name, '/{}/'.format(name)))
 
     def _root(self) -> Optional[Candidate]:
-        """Return the robot without a namespace, None if there is none."""
+        """Return the robot without a namespace, or None."""
         robot_type = self._parameters.get('robot_type')
         if not (isinstance(robot_type, str) or ROOT in self._commands):
             return None
@@ -316,11 +316,12 @@ class Survey:
         return topic if topic.startswith('/') else prefix + topic
 
     def _is_behind(self, namespace: str, topic: str) -> bool:
-        """Tell whether a node of the robot writes a velocity topic that reads velocity itself.
+        """Return whether a node of the robot writes a velocity topic that reads velocity itself.
 
-        A multiplexer, a smoother. A navigation, which reads none, drives beside us.
+        Examples are a multiplexer and a smoother. A navigation does not subscribe velocity: it
+        commands the robot in parallel with us.
         """
-        # Of a robot without a namespace, mhri's own nodes are beside it, not in it.
+        # mhri's own nodes are at the root, too, but not part of a robot without a namespace.
         ignored = partial(self._ignore.covers, namespace=namespace) if namespace == ROOT \
             else self._ignored
         writers = {node for node in self._publishers.get(topic, ())

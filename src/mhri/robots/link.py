@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What is known about a robot's link: how it moves, and whether it can still be heard."""
+"""The link of a robot: its motion, and whether it still sends data."""
 import math
 from dataclasses import dataclass
 from typing import Optional, Sequence
@@ -11,6 +11,8 @@ from mhri.base.views import GONE, LIVE, SILENT, WAITING
 
 STANDSTILL_MPS = 0.01
 STANDSTILL_RAD_S = 0.03
+# A longer silence is named by its beginning [s].
+LONG_S = 60.0
 _KINDS = (SPEED, ANGULAR_VELOCITY, PLACE, PLACE, ANGLE, SPEED)
 
 
@@ -19,8 +21,8 @@ class Motion:
     """A robot's motion by its own odometry: m/s, rad/s, m, m, rad in its ``odom`` frame.
 
     ``lateral_mps`` is its speed to the left [m/s], for a robot that slides or can drive sideways.
-    ``problem`` names what it said that cannot be (:mod:`mhri.base.plausible`), which is NaN
-    here; None: nothing.
+    ``problem`` names an impossible value (:mod:`mhri.base.plausible`), which is NaN here; None if
+    all are possible.
     """
 
     linear_mps: float
@@ -32,10 +34,10 @@ class Motion:
     problem: Optional[str] = None
 
     @classmethod
-    def told(cls, *values: float, turn: Sequence[float] = ()) -> 'Motion':
-        """Return the motion of what a robot says: the six values, in the order of the fields above.
+    def reported(cls, *values: float, turn: Sequence[float] = ()) -> 'Motion':
+        """Return the motion of six reported values, in the order of the fields above.
 
-        :param turn: the quaternion that the heading is from, () where it is from none
+        :param turn: the quaternion of the heading, () if it is not from one
         """
         (linear, angular, x_m, y_m, heading, lateral), problem = sifted(_KINDS, values)
         _, twisted = sifted((QUATERNION,) * len(turn), turn)
@@ -48,13 +50,13 @@ class Motion:
         return math.hypot(self.linear_mps, self.lateral_mps)
 
     def is_possible(self) -> bool:
-        """Tell whether all values are possible for a robot."""
+        """Return whether all values are possible for a robot."""
         return all(map(can_be, _KINDS, (
             self.linear_mps, self.angular_rad_s, self.x_m, self.y_m, self.heading_rad,
             self.lateral_mps)))
 
     def is_standstill(self) -> bool:
-        """Tell whether the speeds are those of a robot at rest.
+        """Return whether the speeds are those of a robot at rest.
 
         The thresholds are above the noise of wheel odometry at rest (which is zero, since encoders
         do not tick) and far below the slowest speed an operator can see.
@@ -69,10 +71,10 @@ def link_state(age_s: Optional[float], connections: int, silent_after_s: float =
 
     :param age_s: age of its newest message [s], None if there was none
     :param connections: number of open connections to its streams
-    :param silent_after_s: its messages may be this far apart [s]; 0: silence means nothing
-        while a connection is open
-    :param reached: whether a node of the robot takes commands; for a robot without odometry nothing
-        else is known
+    :param silent_after_s: its messages may be this far apart [s]; 0: silence is ignored while a
+        connection is open
+    :param reached: whether a node of the robot subscribes commands; the only evidence for a robot
+        without odometry
     :returns: WAITING, LIVE, SILENT or GONE
     """
     if age_s is not None and age_s <= (silent_after_s or SILENT_AFTER_S):
@@ -87,17 +89,18 @@ def link_state(age_s: Optional[float], connections: int, silent_after_s: float =
 
 
 def link_note(state: str, age_s: Optional[float], heard_at: str, waited_s: float) -> str:
-    """Return what an operator should know about a link, in words; '' if all is well.
+    """Return a note for the operator about a link; '' if all is well.
 
     :param heard_at: local time of the newest message as text, e.g. '14:02:11'
     :param waited_s: how long the robot has been in the list [s]
     """
     if state == LIVE and age_s is None:
-        return 'tells no odometry: mhri cannot know whether it moves'
+        return 'sends no odometry: mhri cannot tell whether it moves'
     if state == SILENT and age_s is not None:
-        return 'nothing for {:.1f} s'.format(age_s)
+        return 'nothing since {}'.format(heard_at) if age_s >= LONG_S \
+            else 'nothing for {:.1f} s'.format(age_s)
     if state == GONE:
         return 'switched off or out of reach; last heard {}'.format(heard_at)
     if state == WAITING and waited_s > 3.0:
-        return 'nothing heard yet: is it switched on, and is this its name?'
+        return 'nothing heard yet: check its power and its name'
     return ''

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""How good the link to a robot is: round trip, clock offset and loss. No ROS, no clock."""
+"""Measures the link to a robot: round trip, clock offset and loss. No ROS, no clock."""
 import collections
 import statistics
 from typing import Deque, Optional, Tuple
@@ -8,18 +8,18 @@ from typing import Deque, Optional, Tuple
 from mhri.base.views import LinkFigures
 
 ROUND_TRIPS = 5
-# The window for the least delay and for the losses [s].
+# Windows of the minimum delay and of the loss [s].
 OFFSET_WINDOW_S = 10.0
 LOSS_WINDOW_S = 5.0
-MOST_LOST = 500
-# Past these a row warns. Driving by camera gets worse from 170 ms on (MacKenzie & Ware, CHI '93:
+MAX_LOST = 500
+# Beyond these a row warns. Driving by camera gets worse from 170 ms on (MacKenzie & Ware, CHI '93:
 # 225 ms of lag cost 64 % of the time); two clocks 0.1 s apart upset tf and motion capture.
 WARN_ROUND_TRIP_S = 0.2
 WARN_LOSS = 0.05
 WARN_OFFSET_S = 0.1
-# A group slows down from here on: half the pace at twice the round trip [s].
+# Above this round trip a group slows down: half the speed at twice the round trip [s].
 SLOW_ROUND_TRIP_S = 0.15
-LEAST_SHARE = 0.2
+MIN_SHARE = 0.2
 SHARE_STEP = 0.1
 
 
@@ -35,7 +35,7 @@ class LinkQuality:
         self._seq: Optional[int] = None
 
     def on_round_trip(self, round_trip_s: Optional[float]) -> None:
-        """Take in the time from a question to its answer [s]; None if no answer came."""
+        """Handle a round trip [s]; None if there was no answer."""
         if round_trip_s is None:
             self._unanswered += 1
             if self._unanswered >= 2:
@@ -45,21 +45,21 @@ class LinkQuality:
             self._round_trips.append(round_trip_s)
 
     def on_message(self, seq: int, delay_s: Optional[float], now: float) -> None:
-        """Take in one message of a stream.
+        """Handle one message of a stream.
 
         :param seq: its sequence number, which the publisher increases by one
         :param delay_s: local time of receipt minus its stamp [s]; None without a stamp
-        :param now: [s], of a clock that never goes back
+        :param now: [s], of a monotonic clock
         """
         if delay_s is not None:
-            # Keep only the delays in the window that no later one is below.
+            # Keep only delays in the window that are below all later ones.
             while self._delays and self._delays[-1][1] >= delay_s:
                 self._delays.pop()
             self._delays.append((now, delay_s))
         gap = seq - self._seq - 1 if self._seq is not None else 0
         self._seq = seq
-        # A restarted publisher is no loss, nor are two publishers.
-        gap = gap if 0 <= gap <= MOST_LOST else 0
+        # Neither a restarted publisher nor a second one counts as loss.
+        gap = gap if 0 <= gap <= MAX_LOST else 0
         self._counts.append((now, gap))
         self._lost += gap
         self._forget(now)
@@ -76,7 +76,7 @@ class LinkQuality:
         trips = self._round_trips
         offset = None
         if self._delays and trips:
-            # The quickest message took about half the quickest round trip.
+            # The fastest message took about half the fastest round trip.
             offset = min(trips) / 2.0 - self._delays[0][1]
         return LinkFigures(
             round_trip_s=statistics.median(trips) if trips else None, offset_s=offset,
@@ -84,17 +84,17 @@ class LinkQuality:
 
 
 class RecordedQuality(LinkQuality):
-    """The link of a robot that is replayed: its round trip, which was recorded.
+    """The link of a replayed robot: its recorded round trip.
 
-    How a player's own messages come says nothing about the link of then.
+    The arrival of the player's own messages says nothing about the recorded link.
     """
 
     def on_message(self, seq: int, delay_s: Optional[float], now: float) -> None:
-        """Leave it out."""
+        """Ignore it."""
 
 
 def link_warning(figures: LinkFigures, dropped: bool = False) -> str:
-    """Return what is wrong with a live link; '' if all is well.
+    """Return the problems of a live link in words; '' if all is well.
 
     :param dropped: whether the robot's guard is dropping commands now
     """
@@ -118,4 +118,4 @@ def link_share(round_trip_s: Optional[float]) -> float:
     if round_trip_s is None or round_trip_s <= SLOW_ROUND_TRIP_S:
         return 1.0
     steps = int(SLOW_ROUND_TRIP_S / round_trip_s / SHARE_STEP + 1e-9)
-    return max(LEAST_SHARE, round(steps * SHARE_STEP, 1))
+    return max(MIN_SHARE, round(steps * SHARE_STEP, 1))

@@ -1,41 +1,41 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""When a robot's scan was made, and where the robot was then: the one rule, for stick and tasks.
+"""The time and robot pose of a scan: one rule for stick and tasks.
 
-A scan counts from its stamp, where that is by the clock which stamps the robot's odometry; else
-from its receipt, where the robot was heard last. Our clock need not agree with the robot's.
+A scan has the time of its stamp if that comes from the clock of the robot's odometry; else the time
+of its receipt, and the newest pose. The clocks of robot and host need not agree.
 """
 from collections import deque
 import math
 from typing import Deque, NamedTuple, Optional, Tuple
 
-from mhri.base.mocap import Pose
+from mhri.base.geometry import Pose
 from mhri.robots.stamp_age import StampAge
 
-# What was measured longer before the newest odometry is late beyond use [s].
+# A scan stamped longer before the newest odometry is too late to use [s].
 KEPT_S = 0.5
-# A stamp that is further from that of the newest odometry is none, or by another clock [s].
+# A stamp further from that of the newest odometry is invalid, or of another clock [s].
 SAME_CLOCK_S = 2.0
 _MOST = 100
-# Odometry that goes or turns further between two messages has begun anew [m, rad], besides what
-# the robot may have moved meanwhile; nobody knows what it did for longer than this [s].
+# Odometry has restarted if it moves or turns further than this between two messages [m, rad], on
+# top of the way the robot can have driven in that time, of which this much counts at most [s].
 _LEAP_M, _LEAP_RAD, _TURNS_RAD_S, _UNHEARD_S = 0.2, 0.5, 6.0, 1.0
-_MOST_SOURCES = 8
+_MAX_SOURCES = 8
 
 
 class Moment(NamedTuple):
-    """When a scan was made [s, of our clock], and where the robot was, None: where it is now."""
+    """The time of a scan [s, of our clock], and the robot's pose (None: its present pose)."""
 
     at_s: float
     pose: Optional[Pose]
 
 
 class PoseTrack:
-    """The last poses of a robot, each with its stamp [s]: of one clock, whichever it is.
+    """The latest poses of a robot with their stamps [s], all of one clock.
 
-    Poses come from one thread; another may ask.
+    One thread adds poses; another may query them.
 
-    :param most_mps: the most that the robot drives
+    :param most_mps: maximum speed of the robot
     """
 
     def __init__(self, most_mps: float = 2.0) -> None:
@@ -43,15 +43,15 @@ class PoseTrack:
         self._age = StampAge()
         self._most_mps = most_mps
         self._last: Optional[Tuple[Pose, float, float]] = None
-        self._sources: Deque[object] = deque(maxlen=_MOST_SOURCES)
+        self._sources: Deque[object] = deque(maxlen=_MAX_SOURCES)
 
     def follow(self, pose: Pose, heard_s: float, source: object = None,
                stamp_s: float = 0.0) -> bool:
-        """Take in a pose, with or without a stamp; return whether odometry has begun anew.
+        """Handle a pose, with or without a stamp; return whether odometry has restarted.
 
-        :param heard_s: when, of our clock, which never goes back [s]
-        :param source: stands for who said it: another than before has another origin
-        :param stamp_s: what is heard late was not said at that time [s], 0: it has no stamp
+        :param heard_s: time of receipt, of our monotonic clock [s]
+        :param source: identifies the sender; each sender has its own origin
+        :param stamp_s: stamp [s], 0: none
         """
         last, self._last = self._last, (pose, heard_s, stamp_s)
         anew = last is not None and all(source is not one for one in self._sources)
@@ -66,9 +66,9 @@ class PoseTrack:
                 or turned > _LEAP_RAD + _TURNS_RAD_S * passed_s)
 
     def add(self, stamp_s: float, pose: Pose, heard_s: float) -> None:
-        """Take in a pose; a stamp that goes back begins anew.
+        """Add a pose; a stamp that does not advance discards all earlier poses.
 
-        :param heard_s: when, of our clock, which never goes back [s]
+        :param heard_s: time of receipt, of our monotonic clock [s]
         """
         self._age.late_s(stamp_s, heard_s)
         if self._poses and stamp_s <= self._poses[-1][0]:
@@ -78,9 +78,9 @@ class PoseTrack:
             self._poses.popleft()
 
     def moment(self, stamp_s: float, heard_s: float) -> Moment:
-        """Return when and where a scan was made that was heard at a time.
+        """Return the time and pose of a scan received at a time.
 
-        :raises ValueError: it is late beyond use, or two clocks of the robot are apart
+        :raises ValueError: it is too late, or two clocks of the robot differ
         """
         poses = tuple(self._poses)
         if not poses or abs(stamp_s - poses[-1][0]) > SAME_CLOCK_S:
@@ -93,7 +93,7 @@ class PoseTrack:
 
 
 def _at(stamp_s: float, poses: Tuple[Tuple[float, Pose], ...]) -> Optional[Pose]:
-    """Return where the robot was then, None where these poses do not tell."""
+    """Return the pose of the robot at that stamp, None if unknown."""
     for (before_s, before), (after_s, after) in zip(poses, poses[1:]):
         if before_s <= stamp_s <= after_s:
             share = (stamp_s - before_s) / (after_s - before_s)

@@ -1,14 +1,14 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""How late a stamped message is, from a robot whose clock may be off by any amount."""
+"""Measures the delay of stamped messages from a robot whose clock may be off by any amount."""
 from typing import Optional
 
 # Stamps below this [s since 1970] are simulated time, or from a clock that was never set.
 SET_SINCE_S = 1e9
-# How fast to forget the least delay [s/s], since clocks drift apart: 0.05 % is more than any quartz
-# is off, and far less than a creeping delay.
+# Rate of forgetting the minimum delay [s/s], since clocks drift: 0.05 % is more than the drift of
+# any quartz, and far less than a creeping delay.
 LEAK = 5e-4
-# After a clock was set back nothing is known for this long [s].
+# After a clock was set back delays are unknown for this long [s].
 SETTLE_S = 1.0
 
 
@@ -22,22 +22,22 @@ def delay_of(received_s: float, stamp_s: float) -> Optional[float]:
 
 
 class StampAge:
-    """Compares the delay of each message with the least delay so far.
+    """Compares the delay of each message with the minimum delay so far.
 
-    The least delay (time of receipt minus stamp) is the clock offset plus the quickest journey. A
-    message is late by whatever exceeds that. Not thread-safe; the times of receipt are seconds of a
-    clock that never goes back.
+    The minimum delay (time of receipt minus stamp) is the clock offset plus the fastest transit. A
+    message is late by the excess over it. Not thread-safe; times of receipt are seconds of a
+    monotonic clock.
     """
 
     def __init__(self) -> None:
-        # Of the previous message; None before the first, and then the others mean nothing.
+        # Of the previous message; None before the first: then the other fields are meaningless.
         self._stamp_s: Optional[float] = None
         self._least_s = self._now = self._settled_at = 0.0
 
     def late_s(self, stamp_s: Optional[float], now: float) -> Optional[float]:
-        """Take in one message; return how late it is [s, >= 0].
+        """Handle one message; return how late it is [s, >= 0].
 
-        :param stamp_s: None, or below :data:`SET_SINCE_S`, tells nothing; the result is 0
+        :param stamp_s: if None, or below :data:`SET_SINCE_S`, the result is 0
         :returns: None if unknown: for :data:`SETTLE_S` after the first message, and after one
             stamped earlier than its predecessor
         """
@@ -52,9 +52,9 @@ class StampAge:
         return delay_s - self._least_s if now >= self._settled_at else None
 
     def since_s(self, stamp_s: float, now: float) -> float:
-        """Return how long ago something was stamped by that clock, less the quickest journey [s].
+        """Return the age of a stamp of that clock, minus the fastest transit [s].
 
-        :returns: 0 where that is not known, as in simulated time
+        :returns: 0 if that is unknown, as in simulated time
         """
         if self._stamp_s is None or stamp_s < SET_SINCE_S:
             return 0.0

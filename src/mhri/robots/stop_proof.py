@@ -2,43 +2,45 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The proof of a stop: a robot is called stopped only when its own odometry shows standstill.
 
-And only if that odometry followed what the robot was told before the stop: one that says standstill
+And only if that odometry followed the commands before the stop: one that reports standstill
 whatever the robot does proves nothing (:class:`OdometryWitness`).
 """
 import math
 from typing import Optional, Tuple
 
+from mhri.base.limits import Velocity
 from mhri.base.plausible import ANGULAR_VELOCITY, BOUNDS, SPEED
+from mhri.base.reasons import NO_WITNESS
 from mhri.base.robot_types import SILENT_AFTER_S
 from mhri.base.views import PROOF_NOT_CONFIRMED, PROOF_STOPPED, PROOF_WAITING, ProofView
-from mhri.robots.gate_words import NO_WITNESS
 from mhri.robots.link import Motion, STANDSTILL_MPS, STANDSTILL_RAD_S
 
 READINGS = 3
-# Time from the first reading of a row to the last [s]: in less, a creeping pose looks at rest.
+# Minimum time from the first reading of a row to the last [s]: in less, a creeping pose looks at
+# rest.
 ROW_S = 0.1
-PATIENCE_S = 2.0
-# A resting pose may jitter this much over this long.
+TIMEOUT_S = 2.0
+# A resting pose may jitter this much.
 JITTER_M = 0.001
 JITTER_RAD = 0.003
 POSE_WINDOW_S = 1.0
 # If the round trip is unknown, a stop and its answer may take this long together [s].
 UNKNOWN_ROUND_TRIP_S = 0.25
-# A robot that is told less may rightly stand: friction, noise, the smallest step of its motors
-# [m/s, rad/s].
+# At slower commands a robot may rightly stand still: friction, noise, the smallest step of its
+# motors [m/s, rad/s].
 MIN_TOLD_MPS, MIN_TOLD_RAD_S = 0.05, 0.2
-# A robot that is told to go moves within this time [s], the round trip aside; motors have to start.
+# A commanded robot moves within this time [s] plus the round trip; motors have to start.
 FOLLOWS_WITHIN_S = 1.0
 
 
 class PoseWatch:
-    """Tells whether a pose moves, whatever the velocities beside it say."""
+    """Measures the speed of a pose, regardless of the velocities reported with it."""
 
     def __init__(self) -> None:
         self._anchor: Optional[Tuple[float, Motion]] = None
 
     def speed(self, motion: Motion, now: float) -> Tuple[float, float]:
-        """Take in one reading; return the speed of the pose [m/s, rad/s], zeros at rest."""
+        """Handle one reading; return the speed of the pose [m/s, rad/s], zeros at rest."""
         if self._anchor is None:
             self._anchor = (now, motion)
             return 0.0, 0.0
@@ -56,13 +58,13 @@ class PoseWatch:
 
 
 class OdometryWitness:
-    """Judges whether a robot's odometry follows what the robot is told.
+    """Judges whether a robot's odometry follows the commands.
 
-    It does not once READINGS readings in a row, of times when the robot should have been moving
-    for FOLLOWS_WITHIN_S, show standstill: of speed and pose, or of turning where the robot was told
-    only to turn. It does again with the first reading that shows motion while the robot is told to
-    move. Wheels that slip before a wall show motion; a robot whose wheels are held, and that is
-    told to go all the same, cannot be told from one whose odometry hangs.
+    It no longer does after READINGS readings in a row show standstill although the robot should
+    have been moving for FOLLOWS_WITHIN_S: of speed and pose, or of turning if the command is only
+    to turn. It does again with the first reading that shows motion while the command is to move.
+    Wheels that slip at a wall show motion; a commanded robot whose wheels are held cannot be
+    distinguished from one whose odometry hangs.
 
     Times are seconds of a clock that never goes back.
     """
@@ -70,29 +72,29 @@ class OdometryWitness:
     def __init__(self) -> None:
         self.follows = True
         self._pose = PoseWatch()
-        self._told_at: Optional[float] = None
+        self._commanded_at: Optional[float] = None
         self._only_turns = False
         self._still = 0
 
     @property
     def asks(self) -> bool:
-        """Whether the robot is told to move: only then readings count."""
-        return self._told_at is not None
+        """Whether the robot is commanded to move: only then readings count."""
+        return self._commanded_at is not None
 
-    def on_told(self, linear_mps: float, angular_rad_s: float, now: float) -> None:
-        """Take in the velocity that the robot has been given, as often as you like."""
-        goes = abs(linear_mps) >= MIN_TOLD_MPS
-        if not goes and abs(angular_rad_s) < MIN_TOLD_RAD_S:
-            self._told_at = None
-        elif self._told_at is None or self._only_turns == goes:
-            self._told_at, self._still, self._only_turns = now, 0, not goes
+    def on_command(self, velocity: Velocity, now: float) -> None:
+        """Handle the velocity of the robot's command; may be called at any rate."""
+        goes = velocity.speed_mps >= MIN_TOLD_MPS
+        if not goes and abs(velocity.angular_rad_s) < MIN_TOLD_RAD_S:
+            self._commanded_at = None
+        elif self._commanded_at is None or self._only_turns == goes:
+            self._commanded_at, self._still, self._only_turns = now, 0, not goes
 
-    def on_motion(self, motion: Motion, now: float, round_trip_s: float = 0.0) -> None:
-        """Take in a reading of the odometry while :attr:`asks`.
+    def on_motion(self, motion: Motion, now: float, round_trip_s: float) -> None:
+        """Handle a reading of the odometry while :attr:`asks`.
 
         :param round_trip_s: of the link to the robot [s]; NaN: unknown
         """
-        if self._told_at is None or not motion.is_possible():
+        if self._commanded_at is None or not motion.is_possible():
             return
         pose_mps, pose_rad_s = self._pose.speed(motion, now)
         moves = abs(motion.angular_rad_s) > STANDSTILL_RAD_S or pose_rad_s > 0.0 \
@@ -101,7 +103,7 @@ class OdometryWitness:
             round_trip_s = UNKNOWN_ROUND_TRIP_S
         if moves:
             self.follows, self._still = True, 0
-        elif now - self._told_at > FOLLOWS_WITHIN_S + round_trip_s:
+        elif now - self._commanded_at > FOLLOWS_WITHIN_S + round_trip_s:
             self._still += 1
             self.follows = self.follows and self._still < READINGS
 
@@ -112,26 +114,26 @@ class StopProof:
     States::
 
         WAITING        -> STOPPED        READINGS readings of standstill in a row, over ROW_S
-        WAITING        -> NOT_CONFIRMED  it still moves after PATIENCE_S, or nothing was heard from
-                                         it for ``silent_after_s``
+        WAITING        -> NOT_CONFIRMED  it still moves after TIMEOUT_S, or it was silent for
+                                         ``silent_after_s``
         STOPPED        -> NOT_CONFIRMED  it moves again, or falls silent
         any            -> NOT_CONFIRMED  its odometry does not follow (:attr:`follows`)
         NOT_CONFIRMED  -> STOPPED        READINGS readings of standstill in a row, over ROW_S
 
     A reading of standstill has all three planar velocities near zero, a pose that does not change,
-    and no impossible number. It counts from when it was measured, not from when it arrived, and
+    and no impossible number. It counts from the time of its measurement, not of its arrival, and
     only if the stop had reached the robot by then. The time given is that of the first reading of
-    the row. If the robot was not heard for ``silent_after_s`` before that reading, it may have
-    stood still long before, and the words say so.
+    the row. If the robot was silent for ``silent_after_s`` before that reading, it may have stood
+    still long before, and the words say so.
 
-    :param now: when the zero was sent
+    :param now: time at which the zero was sent
     :param round_trip_s: of the link to the robot [s], None if unknown
     :param silent_after_s: after this long the robot is silent [s]; 0: as 1
     """
 
     def __init__(self, now: float, round_trip_s: Optional[float] = None,
                  silent_after_s: float = SILENT_AFTER_S) -> None:
-        #: whether its odometry is a witness, see :class:`OdometryWitness`
+        #: whether its odometry follows the commands, see :class:`OdometryWitness`
         self.follows = True
         self._begun = now
         # Readings measured before this may be from before the stop arrived.
@@ -146,26 +148,27 @@ class StopProof:
         # A creeping pose looks like rest in every other reading: keep its words for a while.
         self._crept, self._crept_at = '', -math.inf
         self.state = PROOF_WAITING
-        self._stopped_ms: Optional[float] = None
-        # Whether nobody can tell when the robot came to rest: it was not heard all along.
+        #: time from the stop to the first reading of standstill [ms]; None while it moves
+        self.stopped_ms: Optional[float] = None
+        # Whether the time of its standstill is unknown, since it was silent for a while.
         self._unseen = False
 
     def on_motion(self, motion: Motion, now: float, late_s: Optional[float] = 0.0) -> None:
-        """Take in one reading of the robot's odometry, received at ``now``.
+        """Handle one reading of the robot's odometry, received at ``now``.
 
-        :param late_s: how much later it came than the quickest [s]; None if unknown
+        :param late_s: its delay in excess of the fastest message [s]; None if unknown
         """
         self._heard = now
         measured = self._measured if late_s is None else max(now - late_s, self._measured)
         if measured - self._measured > self._silent_after_s:
             self._run = 0
-            if self._stopped_ms is None:
+            if self.stopped_ms is None:
                 self._unseen = True
         self._measured = measured
         self._doubt = self._moves(motion, measured)
         if self._doubt:
             self._run = 0
-            self._stopped_ms = None
+            self.stopped_ms = None
             if self.state == PROOF_STOPPED:
                 self.state = PROOF_NOT_CONFIRMED
         elif late_s is None:
@@ -201,34 +204,29 @@ class StopProof:
         if self._run >= READINGS and measured - self._run_began >= ROW_S \
                 and self.state != PROOF_STOPPED:
             self.state = PROOF_STOPPED
-            if self._stopped_ms is None:
-                self._stopped_ms = max(0.0, (self._run_began - self._begun) * 1000.0)
+            if self.stopped_ms is None:
+                self.stopped_ms = max(0.0, (self._run_began - self._begun) * 1000.0)
 
     def view(self, now: float) -> ProofView:
-        """Let time pass and return the :class:`ProofView` of this moment."""
+        """Check for time-outs, and return the :class:`ProofView` of this moment."""
         old = now - self._measured > self._silent_after_s
-        late = self.state == PROOF_WAITING and now - self._begun > PATIENCE_S
+        late = self.state == PROOF_WAITING and now - self._begun > TIMEOUT_S
         if not self.follows:
-            self._stopped_ms = None
+            self.stopped_ms = None
         if old or late or not self.follows:
             self.state = PROOF_NOT_CONFIRMED
             self._run = 0 if old else self._run
         return ProofView(self.state, self._words(now))
 
-    @property
-    def stopped_ms(self) -> Optional[float]:
-        """Time from the stop to the first reading of standstill [ms]; None while it moves."""
-        return self._stopped_ms
-
     def _words(self, now: float) -> str:
-        if self.state == PROOF_STOPPED and self._stopped_ms is not None:
+        if self.state == PROOF_STOPPED and self.stopped_ms is not None:
             if self._unseen:
-                return 'standstill seen after {:.1f} s'.format(self._stopped_ms / 1000.0)
-            return 'stopped in {:.0f} ms'.format(self._stopped_ms)
+                return 'standstill seen after {:.1f} s'.format(self.stopped_ms / 1000.0)
+            return 'stopped in {:.0f} ms'.format(self.stopped_ms)
         if self.state == PROOF_WAITING:
             return 'stopping'
         if now - self._heard > self._silent_after_s:
-            return 'NOT CONFIRMED: it cannot be heard'
+            return 'NOT CONFIRMED: no odometry arrives'
         if not self.follows:
             return 'NOT CONFIRMED: ' + NO_WITNESS
         if self._doubt:

@@ -1,19 +1,19 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Whether two computers are one robot: both would be driven at once, each on its own way."""
+"""Detects two computers under one robot name, which would both be driven at once."""
 from typing import Collection, Dict, Iterable, Mapping, Optional, Set
 
-# Two guards are told apart within this time [s]: each echoes ten times a second.
+# Two guards are detected within this time [s]: each echoes ten times a second.
 TURNS_S = 2.0
 
 
 def twins(odometry: Iterable[Mapping[str, str]], listeners: Mapping[str, str]) -> Set[str]:
     """Return the nodes, or network addresses, that are a robot each; empty for at most one.
 
-    A base tells of its motion and reads its commands. So these are the nodes that publish one and
-    the same topic of odometry and read velocity; or, where several nodes are one robot, the
-    computers that do. A recorder, a player, a screen, or a robot's second computer does one of it
-    at most.
+    The base of a robot publishes odometry and subscribes velocity. So these are the nodes that
+    publish the same odometry topic and subscribe velocity; or, if a robot has several nodes, the
+    computers that do. A recorder, a player, a screen, or a second computer of a robot does only
+    one of the two.
 
     :param odometry: for each topic {caller id: network address} of its publishers
     :param listeners: {caller id: network address} of the nodes that read velocity
@@ -28,9 +28,9 @@ def twins(odometry: Iterable[Mapping[str, str]], listeners: Mapping[str, str]) -
 
 
 class GuardTurns:
-    """Notices two guards that echo in turn; times are [s] of a clock that never goes back.
+    """Detects two guards that echo in turn; times are [s] of a monotonic clock.
 
-    A guard that was started anew has another run in its tokens, and the old one never comes back.
+    A restarted guard has a new run in its tokens, and the old run never returns.
     """
 
     def __init__(self) -> None:
@@ -39,7 +39,7 @@ class GuardTurns:
         self._turned_at: Optional[float] = None
 
     def on_token(self, token: str, now: float) -> None:
-        """Take in the token of an echo, ``<run>-<number>``."""
+        """Handle the token of an echo, ``<run>-<number>``."""
         run = token.partition('-')[0]
         if run != self._last and now - self._heard_at.get(run, -TURNS_S) < TURNS_S:
             self._turned_at = now
@@ -48,7 +48,7 @@ class GuardTurns:
         self._last, self._heard_at[run] = run, now
 
     def two(self, now: float) -> bool:
-        """Tell whether two guards have echoed in turn just now."""
+        """Return whether two guards have echoed in turn recently."""
         return self._turned_at is not None and now - self._turned_at < TURNS_S
 
 

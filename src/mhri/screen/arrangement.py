@@ -1,41 +1,43 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Where the tiles go: pictures as large as possible, and none over another.
+"""The arrangement of the stage: large pictures, a cell for each robot, the map; no room is left.
 
-Tiles are large (what the operator drives by) or small (the rest, a strip beside or below). Every
-way of placing them is tried: the large ones as large as they can be, the small ones of use.
+The cells are a strip beside or below the rest, the *room*, in which the large pictures lie. The map
+is at the end of the strip, or beside or below the large pictures. The places depend on numbers
+alone, not on which robots are large, so that looking at another robot moves nothing. All
+arrangements are tried.
 """
-from collections import Counter
-from dataclasses import dataclass
 from functools import lru_cache
-from math import ceil, sqrt
-from typing import Dict, Iterator, Sequence, Tuple
+from math import sqrt
+from typing import Iterator, List, NamedTuple, Optional, Sequence, Tuple
 
-# How many pictures there are of each shape (width by height).
-Kinds = Dict[float, int]
-
-# Fractions of the stage that the strip of small tiles may have.
-_STRIP_SHARES = tuple(share / 100.0 for share in range(10, 52, 2))
-# A small picture is of use up to this part of the width of a large one; till there, a pixel of its
-# width counts so much.
-_SMALL_ENOUGH = 0.26
-_SMALL_COUNTS = 1.3
-# With room to spare it becomes larger, up to this part of the area of a large one: still smaller at
-# a glance.
-_SMALL_AT_MOST = 0.72
-# So much more has to be seen in another arrangement before the tiles move.
-WORTH_MOVING = 1.06
-# Shape (width / height) of a picture that has not arrived yet.
+# Tried shares of the stage for the strip of cells.
+_STRIP_SHARES = tuple(share / 100.0 for share in range(9, 62, 3))
+# Share of its comfortable size that a cell has, and of the stage that the large pictures have,
+# where there is room for it at all.
+_FIT, _LARGE = 0.66, 0.4
+# Maximum number of rows or columns of the strip.
+_MAX_LINES = 4
+# A cell and the map are useful up to this share of the width of a large picture; weights of a pixel
+# of their width up to there.
+_SMALL_ENOUGH, _SMALL_COUNTS, _MAP_COUNTS = 0.26, 1.3, 1.3
+# Maximum share of a picture that is cut off to fill its box, large and in a cell.
+CUT_LARGE, CUT_SMALL = 0.10, 0.28
+#: maximum share of the screen without picture or map; the share of the stage that is aimed at,
+#: as the gaps between boxes come to it; a difference that counts
+MAX_EMPTY, _AIM_EMPTY, _EMPTY_STEP = 0.03, 0.018, 0.006
+# Assumed shape (width / height) before the first picture.
 USUAL_SHAPE = 4.0 / 3.0
 _GROUP_AT_MOST = 4
-# In the place of a number of columns: one of three beside the two others, so that no cell is empty.
-_BESIDE = 0
 
 AUTO, ONE, ALIKE = 'auto', 'one', 'alike'
+#: the map: never, where room would be left, always
+NO_MAP, MAP_TO_FILL, WITH_MAP = range(3)
+# Its minimum size [px]; the share of its width that is better than black.
+MAP_PX, _NARROW = (300, 150), 0.8
 
 
-@dataclass(frozen=True)
-class Box:
+class Box(NamedTuple):
     """A rectangle on the stage, in pixels."""
 
     x: int
@@ -43,30 +45,35 @@ class Box:
     width: int
     height: int
 
-    def picture(self, shape: float) -> float:
-        """Return the area [px²] that a picture of this shape (width by height) has in it."""
-        height = min(self.height, self.width / shape)
-        return height * height * shape
+
+def covered(width: float, height: float, shape: float, cut: float = 0.0) -> float:
+    """Return the area [px²] that a picture covers of a box.
+
+    :param shape: width / height of the picture
+    :param cut: maximum share of the picture that is cut off to fill the box
+    """
+    high = min(height, width / shape / (1.0 - cut))
+    return high * min(width, height * shape / (1.0 - cut))
 
 
-@dataclass(frozen=True)
-class Arrangement:
-    """A box for each large and each small tile, in order, and the area of all pictures [px²]."""
+class Arrangement(NamedTuple):
+    """Boxes of the large pictures, of all cells, in order, of the map, and of the room."""
 
     large: Tuple[Box, ...] = ()
-    small: Tuple[Box, ...] = ()
-    picture_px: float = 0.0
+    cells: Tuple[Box, ...] = ()
+    the_map: Optional[Box] = None
+    room: Box = Box(0, 0, 0, 0)
 
 
 def choose_large(robots: Sequence[str], driven: Sequence[str], looked_at: str,
                  style: str = AUTO) -> Tuple[str, ...]:
     """Return the robots whose tiles are large, in the order of ``robots``.
 
-    AUTO: a group of two to four that is driven together, else the robot looked at, else the one
-    that is driven, else the first. ONE shows one alone, ALIKE all.
+    AUTO: a driven group of two to four, else the robot in view, else the driven one, else the
+    first. ONE: a single robot. ALIKE: all robots.
 
-    :param driven: the robots that are checked
-    :param looked_at: the robot that was chosen last, '' for none
+    :param driven: the selected robots
+    :param looked_at: the robot chosen last, '' if none
     """
     if style == ALIKE:
         return tuple(robots)
@@ -79,146 +86,215 @@ def choose_large(robots: Sequence[str], driven: Sequence[str], looked_at: str,
     return ()
 
 
-def _beside(box: Box, shapes: Sequence[float], gap: int) -> Tuple[Box, ...]:
-    """Return boxes for three shapes: one at the left, two above each other."""
-    height = (box.height - gap) // 2
-    right = min(ceil(height * max(shapes[1:])), (box.width - gap) // 2)
-    left = box.width - gap - right
-    x = box.x + left + gap
-    return (Box(box.x, box.y, left, box.height), Box(x, box.y, right, height),
-            Box(x, box.y + height + gap, right, height))
+def choose_inset(robots: Sequence[str], driven: Sequence[str], large: Sequence[str]) -> str:
+    """Return the robot whose picture is inset into a large one, '' for none.
 
-
-def _grid(box: Box, shapes: Sequence[float], columns: int, gap: int,
-          centred: bool = False) -> Tuple[Box, ...]:
-    """Return a box for each shape, row by row, in this many columns, or :data:`_BESIDE`.
-
-    :param centred: whether a last row that is not full is in the middle
+    That is the first driven one while no driven one is large: it is never out of sight.
     """
-    if columns == _BESIDE:
-        return _beside(box, shapes, gap)
-    rows = ceil(len(shapes) / columns)
-    width = (box.width - gap * (columns - 1)) // columns
-    height = (box.height - gap * (rows - 1)) // rows
-    spare = (columns * rows - len(shapes)) * (width + gap) // 2 if centred else 0
-    return tuple(Box(box.x + index % columns * (width + gap) + (
-        spare if index // columns == rows - 1 else 0), box.y + index // columns * (height + gap),
-        width, height) for index in range(len(shapes)))
+    group = [name for name in robots if name in driven]
+    return group[0] if group and not any(name in large for name in group) else ''
+
+
+class _Grid(NamedTuple):
+    """Lines of boxes: columns from left to right, or rows from top to bottom.
+
+    A line with fewer boxes is thicker, so that they fill their place at about one shape.
+    """
+
+    columns: bool
+    counts: Tuple[int, ...]
+    #: thickness of all lines, in lengths of the grid
+    lines: float
+
+    def sizes(self, place: Box, gap: int) -> Iterator[Tuple[int, float, float]]:
+        """Yield (number, width, height) of the boxes of each line [px]."""
+        across, along = (place.width, place.height) if self.columns else (
+            place.height, place.width)
+        across -= gap * (len(self.counts) - 1)
+        for count in self.counts:
+            thick, long = across / count / self.lines, (along - gap * (count - 1)) / count
+            yield (count, thick, long) if self.columns else (count, long, thick)
+
+    def boxes(self, place: Box, gap: int) -> Tuple[Box, ...]:
+        """Return the boxes, line by line."""
+        found = []
+        across, along = (place.width, place.height) if self.columns else (
+            place.height, place.width)
+        for count, (begin, thick) in zip(self.counts, _ends(
+                across, [1.0 / count for count in self.counts], gap)):
+            for start, long in _ends(along, [1.0] * count, gap):
+                found.append(Box(place.x + begin, place.y + start, thick, long) if self.columns
+                             else Box(place.x + start, place.y + begin, long, thick))
+        return tuple(found)
+
+    def natural(self, room: Box, shape: float) -> Box:
+        """Return the part of a room, from its upper left, that whole pictures fill."""
+        if self.columns:
+            return Box(room.x, room.y, min(
+                room.width, round(room.height * shape * self.lines)), room.height)
+        return Box(room.x, room.y, room.width, min(
+            room.height, round(room.width / shape * self.lines)))
+
+
+def _ends(length: int, parts: Sequence[float], gap: int) -> Iterator[Tuple[int, int]]:
+    """Yield (begin, length) of each part of a length [px], in these proportions."""
+    room, total, done, begin = length - gap * (len(parts) - 1), sum(parts), 0.0, 0
+    for index, part in enumerate(parts):
+        done += part
+        end = round(room * done / total) + gap * index
+        yield begin, end - begin
+        begin = end + gap
 
 
 @lru_cache(maxsize=64)
-def _columns(count: int) -> Tuple[int, ...]:
-    """Return the numbers of columns worth trying: more with as many rows would only be narrower."""
-    return tuple(sorted({ceil(count / rows) for rows in range(1, count + 1)}))
+def _grids(count: int, most: int) -> Tuple[_Grid, ...]:
+    """Return the grids to try for so many boxes, in at most so many lines."""
+    counts = {tuple((count + line) // lines for line in range(lines))
+              for lines in range(1, min(count, most) + 1)}
+    return tuple(_Grid(columns, lines, sum(1.0 / line for line in lines))
+                 for lines in sorted(counts) for columns in (True, False))
 
 
-def _cell(box: Box, kinds: Kinds, columns: int, gap: int) -> Tuple[int, int, float]:
-    """Return width and height of a box of such a grid, and the area of all its pictures [px²]."""
-    rows = ceil(sum(kinds.values()) / columns)
-    width = (box.width - gap * (columns - 1)) // columns
-    height = (box.height - gap * (rows - 1)) // rows
-    if min(width, height) < 1:
-        return width, height, 0.0
-    return width, height, sum(count * min(height, width / shape) ** 2 * shape
-                              for shape, count in kinds.items())
+class _Filled(NamedTuple):
+    """A place filled by a grid of pictures: the areas of whole pictures, and without one [px²]."""
+
+    place: Box
+    grid: Optional[_Grid]
+    picture_px: float = 0.0
+    empty_px: float = 0.0
+    #: smallest width and height of a box [px]
+    least: Tuple[float, float] = (0.0, 0.0)
 
 
-def _worth(large_px: float, larges: int, small_px: float, smalls: int) -> float:
-    """Return how good pictures of these areas [px²] are to drive by, in pixels of width."""
-    large = sqrt(large_px / larges)
-    return large + _SMALL_COUNTS * min(sqrt(small_px / smalls), _SMALL_ENOUGH * large)
+def _filled(place: Box, grid: _Grid, shape: float, cut: float, gap: int) -> Optional[_Filled]:
+    """Return how a grid fills a place; None if there is no room for it."""
+    sizes = tuple(grid.sizes(place, gap))
+    least = min(width for _, width, _ in sizes), min(height for _, _, height in sizes)
+    if min(least) < 1.0:
+        return None
+    return _Filled(
+        place, grid, sum(count * covered(width, height, shape) for count, width, height in sizes),
+        sum(count * (width * height - covered(width, height, shape, cut))
+            for count, width, height in sizes), least)
 
 
-def _best_columns(box: Box, shapes: Sequence[float], gap: int) -> Tuple[float, int]:
-    """Return the area of the pictures in the grid that shows most of them, and its columns."""
-    kinds = Counter(shapes)
-    area, fewer = max((_cell(box, kinds, columns, gap)[2], -columns)
-                      for columns in _columns(len(shapes)))
-    if len(shapes) == 3 and min(box.width, box.height) > 2 * gap:
-        other = sum(one.picture(shape) for one, shape in zip(_beside(box, shapes, gap), shapes))
-        # Alike, they are compared at a glance: it has to be worth it.
-        if other > WORTH_MOVING * area:
-            return other, _BESIDE
-    return area, -fewer
+def _places(room: Box, grid: _Grid, shape: float, gap: int, the_map: int) -> Iterator[
+        Tuple[Box, Optional[Box]]]:
+    """Yield (place of the pictures, place of the map, beside or below them)."""
+    least, natural = MAP_PX, grid.natural(room, shape)
+    width = min(natural.width, room.width - gap - least[0])
+    if the_map and width > 0 and room.height >= least[1]:
+        yield (Box(room.x, room.y, width, room.height),
+               Box(room.x + width + gap, room.y, room.width - width - gap, room.height))
+    height = min(natural.height, room.height - gap - least[1])
+    if the_map and height > 0 and room.width >= _NARROW * least[0]:
+        yield (Box(room.x, room.y, room.width, height),
+               Box(room.x, room.y + height + gap, room.width, room.height - height - gap))
 
 
-def _snug(boxes: Tuple[Box, ...], shapes: Sequence[float], gap: int, room: Box,
-          least_px: int) -> Tuple[Box, ...]:
-    """Return the boxes of a strip no larger than their pictures need, from its upper left.
-
-    :param least_px: least width of one
-    """
-    rows = sorted({box.y for box in boxes})
-    heights = [max(min(box.height, ceil(box.width / shape))
-                   for box, shape in zip(boxes, shapes) if box.y == y) for y in rows]
-    tops = [room.y + sum(heights[:row]) + gap * row for row in range(len(rows))]
-    lefts = sorted({box.x for box in boxes})
-    width = min(boxes[0].width, max(least_px, *(
-        ceil(heights[rows.index(box.y)] * shape) for box, shape in zip(boxes, shapes))))
-    return tuple(Box(room.x + lefts.index(box.x) * (width + gap), tops[rows.index(box.y)],
-                     width, heights[rows.index(box.y)]) for box in boxes)
+def _rooms(room: Box, count: int, shape: float, gap: int, the_map: int) -> Iterator[
+        Tuple[_Filled, Optional[Box]]]:
+    """Yield all ways to fill the room with pictures and map."""
+    cut = CUT_LARGE if count <= _GROUP_AT_MOST else CUT_SMALL
+    for grid in _grids(count, count):
+        places = list(_places(room, grid, shape, gap, the_map))
+        for place, map_box in [(room, None), *places]:
+            filled = _filled(place, grid, shape, cut, gap)
+            if filled:
+                yield filled, map_box
 
 
-def _fitness(width: int, height: int, least: Tuple[int, int]) -> int:
-    """Return how near to their least size boxes are: 6 if they have it, 0 for next to nothing."""
-    return int(6.0 * min(1.0, width / least[0], height / least[1]))
-
-
-def _splits(width: int, height: int, gap: int) -> Iterator[Tuple[Box, Box]]:
-    """Yield (room of the large tiles, room of the strip): the strip at the right, then below."""
+def _strips(whole: Box, count: int, shape: float, gap: int, the_map: int) -> Iterator[
+        Tuple[Box, _Filled, Optional[Box]]]:
+    """Yield (room, strip of cells, map at its end or None), the strip at the right and below."""
+    if not count:
+        yield whole, _Filled(Box(0, 0, 0, 0), None), None
+        return
+    width, height = whole.width, whole.height
     for share in _STRIP_SHARES:
-        strip = round(width * share)
-        yield (Box(0, 0, width - strip - gap, height),
-               Box(width - strip, 0, strip, height))
-        strip = round(height * share)
-        yield (Box(0, 0, width, height - strip - gap),
-               Box(0, height - strip, width, strip))
+        for grid in _grids(count, _MAX_LINES):
+            size = round(share * (width if grid.columns else height))
+            strip = Box(width - size, 0, size, height) if grid.columns else \
+                Box(0, height - size, width, size)
+            room = Box(0, 0, width - size - gap, height) if grid.columns else \
+                Box(0, 0, width, height - size - gap)
+            parts: List[Tuple[Box, Optional[Box]]] = [(strip, None)]
+            if the_map:
+                parts.append(_divided(strip, grid.columns, gap))
+            for place, map_box in parts:
+                filled = _filled(place, grid, shape, CUT_SMALL, gap)
+                if filled and min(room.width, room.height) > 0:
+                    yield room, filled, map_box
 
 
-def arrange(width: int, height: int, large: Sequence[float], small: Sequence[float],
-            least: Tuple[int, int], gap: int) -> Arrangement:
-    """Return where the tiles go.
+def _divided(strip: Box, columns: bool, gap: int) -> Tuple[Box, Optional[Box]]:
+    """Return (place of the cells, place of the map or None if there is no room) of a strip."""
+    x, y, width, height = strip
+    if columns:
+        size = max(MAP_PX[1], min(width, height // 2))
+        if width < MAP_PX[0] or height - size - gap < 1:
+            return strip, None
+        return Box(x, y, width, height - size - gap), Box(x, y + height - size, width, size)
+    size = max(MAP_PX[0], min(2 * height, width // 2))
+    if height < MAP_PX[1] or width - size - gap < 1:
+        return strip, None
+    return Box(x, y, width - size - gap, height), Box(x + width - size, y, size, height)
 
-    :param width: of the stage [px], like ``height``
-    :param large: shape (width by height) of the picture of each large tile
-    :param small: the same of each small one
-    :param least: least width and height of a small tile [px]; kept if possible
-    :param gap: between two tiles [px]
+
+def _worth(pictures: float, cell: float, fit: float, the_map: Optional[Box]) -> float:
+    """Return the usefulness for driving, in pixels of width.
+
+    :param pictures: width of a large picture [px], ``cell`` of one in a cell
+    :param fit: share of its minimum size that a cell reaches, 1 at most
     """
-    whole = Box(0, 0, max(1, width), max(1, height))
-    return _arrange(whole, tuple(large), tuple(small), least, gap)
+    beside = min(the_map.width, the_map.height) if the_map else 0
+    return pictures + _SMALL_COUNTS * min(cell, _SMALL_ENOUGH * pictures) * fit + \
+        _MAP_COUNTS * min(beside, _SMALL_ENOUGH * pictures)
 
 
-# It is asked for at each layout, and changes with a size or a shape alone.
+def arrange(width: int, height: int, large: int, cells: int, shape: float,
+            least: Tuple[int, int], gap: int, the_map: int = NO_MAP) -> Arrangement:
+    """Return the best arrangement: nothing empty, large pictures, useful cells.
+
+    :param width: width of the stage [px], like ``height``
+    :param large: number of large pictures
+    :param cells: number of cells, 0 for no strip
+    :param shape: width / height of most pictures
+    :param least: comfortable width and height of a cell [px]; two thirds are kept if possible
+    :param gap: gap between two tiles [px]
+    :param the_map: NO_MAP, MAP_TO_FILL or WITH_MAP
+    """
+    return _arrange(Box(0, 0, max(1, width), max(1, height)), large, cells, shape, least, gap,
+                    the_map)
+
+
+# Cached, because each layout calls it, mostly with the same sizes and shapes.
 @lru_cache(maxsize=32)
-def _arrange(whole: Box, large: Tuple[float, ...], small: Tuple[float, ...],
-             least: Tuple[int, int], gap: int) -> Arrangement:
-    if not large and not small:
-        return Arrangement()
-    if not large or not small:
-        shapes = large or small
-        area, columns = _best_columns(whole, shapes, gap)
-        boxes = _grid(whole, shapes, columns, gap, True)
-        return Arrangement(boxes, (), area) if large else Arrangement((), boxes, area)
-    best, best_score = None, (-1, -1.0, 0.0)
-    smalls = Counter(small)
-    for room, strip in _splits(whole.width, whole.height, gap):
-        if min(room.width, room.height, strip.width, strip.height) < 1:
-            continue
-        large_px, large_columns = _best_columns(room, large, gap)
-        for columns in _columns(len(small)):
-            width, height, small_px = _cell(strip, smalls, columns, gap)
-            if min(width, height) < 1:
-                continue
-            score = (_fitness(width, height, least),
-                     _worth(large_px, len(large), small_px, len(small)),
-                     min(small_px / len(small), _SMALL_AT_MOST * large_px / len(large)))
+def _arrange(whole: Box, large: int, cells: int, shape: float, least: Tuple[int, int], gap: int,
+             the_map: int) -> Arrangement:
+    best, best_score, rooms = None, (-1000, 0.0, 0.0), {}
+    area = float(whole.width * whole.height)
+    for room, strip, at_end in _strips(whole, cells, shape, gap, the_map) if large else ():
+        wanted = NO_MAP if at_end else the_map
+        if (room, wanted) not in rooms:
+            rooms[room, wanted] = list(_rooms(room, large, shape, gap, wanted))
+        fit = min(1.0, strip.least[0] / least[0], strip.least[1] / least[1]) if cells else 1.0
+        cell = sqrt(strip.picture_px / cells) if cells else 0.0
+        for filled, beside in rooms[room, wanted]:
+            empty = (filled.empty_px + strip.empty_px) / area
+            map_box = at_end or beside
+            # The map is missing only where too much would be empty with it.
+            missing = 2 if the_map == WITH_MAP and not map_box else 0
+            share = filled.picture_px / area
+            score = (min(0, round((_AIM_EMPTY - empty) / _EMPTY_STEP)) - missing,
+                     min(1.0, round(min(fit / _FIT, share / _LARGE), 1)),
+                     _worth(sqrt(filled.picture_px / large), cell, fit,
+                            map_box if the_map == WITH_MAP else None))
             if score > best_score:
-                best_score = score
-                best = (room, large_columns, strip, columns, large_px + small_px)
+                best_score, best = score, (filled, map_box, strip, room)
     if best is None:
-        return Arrangement()
-    room, large_columns, strip, columns, picture_px = best
-    return Arrangement(_grid(room, large, large_columns, gap, True),
-                       _snug(_grid(strip, small, columns, gap), small, gap, strip, least[0]),
-                       picture_px)
+        return Arrangement(room=whole)
+    filled, map_box, strip, room = best
+    larges, boxes = (part.grid.boxes(part.place, gap) if part.grid else ()
+                     for part in (filled, strip))
+    return Arrangement(larges, boxes, map_box, room)

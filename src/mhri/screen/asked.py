@@ -1,26 +1,24 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What was asked of a robot beside what it does, where the two differ for longer than a moment."""
+"""Compares a robot's command with its motion, to show persistent differences."""
 from dataclasses import replace
-from typing import Dict, Iterable, Optional, Tuple
+from typing import Callable, Dict, Iterable, Iterator, Optional, Tuple
 
+from mhri.base.limits import Velocity
 from mhri.base.views import LIVE, RobotView
 
-# Within 10 %, or within this, the two are the same [m/s], [rad/s].
+# Within 10 %, or within these limits, the two count as equal [m/s], [rad/s].
 SAME_SHARE = 0.10
 SAME_MPS = 0.03
 SAME_RAD_S = 0.05
-# For so long they differ while a robot gathers speed, and nobody needs to hear of it [s].
+# Shorter differences are not shown, as a robot needs time to accelerate [s].
 MOMENT_S = 0.7
-
-# m/s and rad/s.
-_Speeds = Tuple[float, float]
 
 
 def differs(asked: float, done: float, least: float) -> bool:
-    """Tell whether a speed is another than the one asked for.
+    """Return whether a speed differs from the commanded one.
 
-    :param least: what is no difference whatever the speeds are; SAME_MPS or SAME_RAD_S
+    :param least: tolerance, SAME_MPS or SAME_RAD_S
     """
     return abs(asked - done) > max(least, SAME_SHARE * abs(asked))
 
@@ -34,66 +32,72 @@ def _turn(value: float) -> str:
     return '{}{:.2f}'.format(side, abs(value))
 
 
+# (field of a velocity and of a robot's view, tolerance, formatter, unit).
+_PARTS: Tuple[Tuple[str, float, Callable[[float], str], str], ...] = (
+    ('linear_mps', SAME_MPS, _speed, 'm/s'), ('lateral_mps', SAME_MPS, _turn, 'm/s'),
+    ('angular_rad_s', SAME_RAD_S, _turn, 'rad/s'))
+
+
+def _differing(robot: RobotView, asked: Velocity) -> Iterator[
+        Tuple[float, float, Optional[float], Callable[[float], str], str]]:
+    """Yield (asked, done, sent if limited, formatter, unit) of each component that differs."""
+    for key, least, written, unit in _PARTS:
+        wanted, done = getattr(asked, key), getattr(robot, key) or 0.0
+        if differs(wanted, done, least):
+            sent = getattr(robot.sent, key) if robot.sent else wanted
+            yield wanted, done, sent if differs(wanted, sent, least) else None, written, unit
+
+
 def asked_line(robot: RobotView) -> str:
-    """Return what was asked for, for the numbers over the picture; '' where the robot does it.
+    """Return the command, for the numbers over the picture; '' if the robot follows it.
 
-    "asked 0.50 m/s"; "asked 0.50, sent 0.22 m/s" where the robot's own limits, or those of its
-    group, let less through.
+    E.g. "asked 0.50 m/s", or "asked 0.50, sent 0.22 m/s" if limits of the robot or its group
+    reduce the command.
 
-    :param robot: :class:`mhri.base.views.RobotView`, ``asked`` as
-        :class:`AskedAndDone` leaves it
+    :param robot: :class:`mhri.base.views.RobotView` with ``asked`` set by :class:`AskedAndDone`
     """
-    if robot.asked is None:
-        return ''
-    linear, turn = robot.asked
-    sent_linear, sent_turn = robot.sent_mps, robot.sent_rad_s
-    if differs(linear, robot.linear_mps or 0.0, SAME_MPS):
-        held = sent_linear is not None and differs(linear, sent_linear, SAME_MPS)
-        between = ', sent {}'.format(_speed(sent_linear or 0.0)) if held else ''
-        return 'asked {}{} m/s'.format(_speed(linear), between)
-    held = sent_turn is not None and differs(turn, sent_turn, SAME_RAD_S)
-    between = ', sent {}'.format(_turn(sent_turn or 0.0)) if held else ''
-    return 'asked {}{} rad/s'.format(_turn(turn), between)
+    for asked, _, sent, written, unit in _differing(robot, robot.asked) if robot.asked else ():
+        return 'asked {}{} {}'.format(
+            written(asked), '' if sent is None else ', sent ' + written(sent), unit)
+    return ''
 
 
 def asked_and_done(robots: Iterable[RobotView]) -> str:
-    """Return "asked 0.50, crawler1 0.20 m/s" of the first robot that does something else, or ''."""
+    """Return "asked 0.50, crawler1 0.20 m/s" for the first differing robot, or ''."""
     for robot in robots:
-        if robot.asked is not None:
-            linear, turn = robot.asked
-            done = robot.linear_mps or 0.0
-            if differs(linear, done, SAME_MPS):
-                return 'asked {}, {} {} m/s'.format(_speed(linear), robot.name, _speed(done))
-            return 'asked {}, {} {} rad/s'.format(
-                _turn(turn), robot.name, _turn(robot.angular_rad_s or 0.0))
+        for asked, done, _, written, unit in _differing(robot, robot.asked) if robot.asked else ():
+            return 'asked {}, {} {} {}'.format(written(asked), robot.name, written(done), unit)
     return ''
 
 
 class AskedAndDone:
-    """Remembers since when each robot has done something else than was asked of it."""
+    """Tracks since when each robot has differed from its command."""
 
     def __init__(self) -> None:
         self._since: Dict[str, float] = {}
 
-    def compare(self, robots: Iterable[RobotView], asked: Optional[_Speeds],
+    def compare(self, robots: Iterable[RobotView], asked: Optional[Velocity],
                 now: float) -> Tuple[RobotView, ...]:
-        """Return the robots, ``asked`` set where it has differed for :data:`MOMENT_S`.
+        """Return the robots, with ``asked`` set if it has differed for :data:`MOMENT_S`.
 
-        :param asked: the operator's command [m/s, rad/s], None where it is not known
-        :param now: seconds of a clock that never goes back
+        :param asked: the operator's command, None if unknown
+        :param now: time [s, monotonic]
         """
         since, robots = self._since, tuple(robots)
         self._since = {robot.name: since.get(robot.name, now) for robot in robots
-                       if asked is not None and _does_else(robot, asked)}
-        return tuple(replace(robot, asked=asked)
-                     if now - self._since.get(robot.name, now) >= MOMENT_S else robot
+                       if asked is not None and _does_else(robot, _meant(robot, asked))}
+        return tuple(replace(robot, asked=_meant(robot, asked))
+                     if asked and now - self._since.get(robot.name, now) >= MOMENT_S else robot
                      for robot in robots)
 
 
-def _does_else(robot: RobotView, asked: _Speeds) -> bool:
-    """Tell whether a robot that obeys the operator does something else."""
-    if not robot.driven or robot.obeys != 'operator' or robot.link != LIVE \
-            or robot.linear_mps is None or robot.angular_rad_s is None:
-        return False
-    return differs(asked[0], robot.linear_mps, SAME_MPS) or \
-        differs(asked[1], robot.angular_rad_s, SAME_RAD_S)
+def _meant(robot: RobotView, asked: Velocity) -> Velocity:
+    """Return the command of a robot, without sideways motion if the robot cannot do it."""
+    return asked if robot.holonomic else Velocity(asked.linear_mps, asked.angular_rad_s)
+
+
+def _does_else(robot: RobotView, asked: Velocity) -> bool:
+    """Return whether a robot driven by the operator differs from its command."""
+    return robot.driven and robot.obeys == 'operator' and robot.link == LIVE \
+        and robot.linear_mps is not None and robot.angular_rad_s is not None \
+        and any(_differing(robot, asked))

@@ -1,29 +1,30 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a pad button, a voice or a lab's node may ask the panel for (``mhri/PanelRequest``)."""
+"""Requests to the panel from pad buttons, voice or a lab's own node (``mhri/PanelRequest``)."""
 from typing import Collection, Sequence, Tuple
 
 SELECT, DESELECT, ONLY = 'select', 'deselect', 'only'
 SELECT_ALL, SELECT_NONE = 'select_all', 'select_none'
 NEXT, PREVIOUS = 'next', 'previous'
 RECORD, STOP_RECORDING, MARK = 'record', 'stop_recording', 'mark'
+ACCESSORY = 'accessory'
 SELECTING = (SELECT, DESELECT, ONLY, SELECT_ALL, SELECT_NONE, NEXT, PREVIOUS)
-ACTIONS = SELECTING + (RECORD, STOP_RECORDING, MARK)
+ACTIONS = SELECTING + (RECORD, STOP_RECORDING, MARK, ACCESSORY)
 
 
 class RequestRefused(ValueError):
-    """A request that the panel refuses; the text tells the operator why."""
+    """The panel refuses a request; the text gives the operator the reason."""
 
 
 def check_request(action: str, names: Sequence[str], robots: Sequence[str]) -> None:
-    """Refuse a request that cannot be carried out.
+    """Validate a request.
 
-    :param names: the robots it names
-    :param robots: those in the panel's list
-    :raises RequestRefused: no such action, no such robot, or none named where one must be
+    :param names: robots named by the request
+    :param robots: robots in the panel's list
+    :raises RequestRefused: the action or a robot is unknown, or a required name is missing
     """
     if action not in ACTIONS:
-        raise RequestRefused('nobody knows how to {!r}; a request is one of {}'.format(
+        raise RequestRefused('unknown request {!r}; expected one of {}'.format(
             action, ', '.join(ACTIONS)))
     strangers = [name for name in names if name not in robots]
     if strangers:
@@ -34,14 +35,14 @@ def check_request(action: str, names: Sequence[str], robots: Sequence[str]) -> N
 
 def selection_after(action: str, names: Sequence[str], robots: Sequence[str],
                     selected: Collection[str]) -> Tuple[str, ...]:
-    """Return the robots that are selected after a request, in the order of the list.
+    """Return the robots selected after a request, in list order.
 
-    ``next`` and ``previous`` wrap around and select one robot alone: the one after the last
-    selected robot, or before the first.
+    ``next`` and ``previous`` wrap around and select a single robot: the one after the last
+    selected robot, or the one before the first.
 
     :param action: one of :data:`SELECTING`
     :param robots: the list
-    :param selected: those selected now
+    :param selected: robots selected before
     :raises RequestRefused: see :func:`check_request`
     """
     check_request(action, names, robots)

@@ -1,31 +1,31 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the screen kept from its last run, checked: anybody may have edited it.
+"""Validates the saved state of the screen, which a user may have edited.
 
 A state is a dict of JSON values: ``robots`` (names), ``numbers`` ({robot: its own number}),
-``mode`` (a source), ``windows`` ({robot: geometry}: where its tile was when it was torn off),
-``torn_off`` (robots), ``looks`` ({robot: what its tile shows}), ``panel`` (``splitter``,
+``mode`` (a source), ``windows`` ({robot: geometry of its torn-off tile}),
+``torn_off`` (robots), ``looks`` ({robot: settings of its tile}), ``panel`` (``splitter``,
 ``drawer``, ``geometry``, ``layout``, ``theme``, ``numbers``), ``events`` (``sounds``) and ``map``
 (``shown``, ``follow``, ``turn``, ``by_link``). A geometry is [x, y, width, height, maximised] in
-pixels: a text that can be read, and no blob that Qt would have to trust.
+pixels, readable text instead of a blob that Qt would have to trust.
 """
 from typing import Any, Callable, Dict, List, NoReturn, Optional, Tuple
 
 from mhri.base.names import name_problem
-from mhri.base.numbers import MOST_NUMBERS
+from mhri.base.numbers import MAX_NUMBERS
 from mhri.base.text import tidy_text
 
-MOST_ROBOTS = 200
-# No screen is wider, and Qt's and X's coordinates end at 32767.
-_MOST_PX = 30_000
-_MOST_PARTS = 10
+MAX_ROBOTS = 200
+# Wider than any screen; coordinates of Qt and X end at 32767.
+_MAX_PX = 30_000
+_MAX_PARTS = 10
 _LONGEST_WORD = 100
 _DEEPEST = 6
-_MOST_VALUES = 500
+_MAX_VALUES = 500
 
 State = Dict[str, Any]
 _Reader = Callable[[Any], Any]
-# ... that reports problems within: value, list of problems, its key.
+# A reader that also reports problems: (value, list of problems, key).
 _PartReader = Callable[[Any, List[str], str], Any]
 
 
@@ -38,19 +38,19 @@ def _refuse(expected: str) -> NoReturn:
 
 
 def is_word(value: Any) -> bool:
-    """Tell whether a value is a short printable text."""
+    """Return whether a value is a short printable text."""
     return isinstance(value, str) and 0 < len(value) <= _LONGEST_WORD and value.isprintable()
 
 
 def _is_whole(value: Any, least: int, most: int) -> bool:
-    """Tell whether a value is a whole number in a range; true and false are not."""
+    """Return whether a value is an integer in a range; booleans are not."""
     return type(value) is int and least <= value <= most
 
 
 def _read_robots(value: Any) -> List[str]:
     names = value if isinstance(value, list) else []
-    if names != value or len(names) > MOST_ROBOTS or not all(map(_is_robot, names)):
-        _refuse('a list of at most {} names of robots'.format(MOST_ROBOTS))
+    if names != value or len(names) > MAX_ROBOTS or not all(map(_is_robot, names)):
+        _refuse('a list of at most {} names of robots'.format(MAX_ROBOTS))
     return names
 
 
@@ -59,12 +59,12 @@ def _is_robot(name: Any) -> bool:
 
 
 def _read_numbers(value: Any) -> Dict[str, int]:
-    """Return {name: number}; refuse two robots with one number, since a key means one robot."""
-    if not (isinstance(value, dict) and len(value) <= MOST_NUMBERS
+    """Return {name: number}; refuse duplicate numbers, because a key selects one robot."""
+    if not (isinstance(value, dict) and len(value) <= MAX_NUMBERS
             and all(map(_is_robot, value))
-            and all(_is_whole(number, 1, MOST_NUMBERS) for number in value.values())
+            and all(_is_whole(number, 1, MAX_NUMBERS) for number in value.values())
             and len(set(value.values())) == len(value)):
-        _refuse('a number of its own, from 1 to {}, for each robot'.format(MOST_NUMBERS))
+        _refuse('a number of its own, from 1 to {}, for each robot'.format(MAX_NUMBERS))
     return dict(value)
 
 
@@ -80,14 +80,20 @@ def _read_flag(value: Any) -> bool:
     return value
 
 
-def read_geometry(value: Any) -> List[Any]:
-    """Return a geometry: [x, y, width, height, maximised], pixels.
+def _read_percent(value: Any) -> int:
+    if not _is_whole(value, 25, 400):
+        _refuse('a size of text [%]')
+    return int(value)
 
-    :raises ValueError: it is none
+
+def read_geometry(value: Any) -> List[Any]:
+    """Return a geometry: [x, y, width, height, maximised], in pixels.
+
+    :raises ValueError: the value is not a geometry
     """
     if not (isinstance(value, list) and len(value) == 5 and isinstance(value[4], bool)
-            and all(_is_whole(part, -_MOST_PX, _MOST_PX) for part in value[:2])
-            and all(_is_whole(part, 1, _MOST_PX) for part in value[2:4])):
+            and all(_is_whole(part, -_MAX_PX, _MAX_PX) for part in value[:2])
+            and all(_is_whole(part, 1, _MAX_PX) for part in value[2:4])):
         _refuse('x, y, width, height [px] and whether it is maximised')
     return list(value)
 
@@ -95,18 +101,18 @@ def read_geometry(value: Any) -> List[Any]:
 def read_sizes(value: Any) -> List[int]:
     """Return the sizes of the parts of a splitter [px].
 
-    :raises ValueError: they are none
+    :raises ValueError: the value is not a list of sizes
     """
-    if not (isinstance(value, list) and len(value) <= _MOST_PARTS
-            and all(_is_whole(part, 0, _MOST_PX) for part in value)):
-        _refuse('the sizes of at most {} parts [px]'.format(_MOST_PARTS))
+    if not (isinstance(value, list) and len(value) <= _MAX_PARTS
+            and all(_is_whole(part, 0, _MAX_PX) for part in value)):
+        _refuse('the sizes of at most {} parts [px]'.format(_MAX_PARTS))
     return list(value)
 
 
 def _count_values(value: Any, depth: int = 0) -> int:
-    """Return how many values a JSON value contains.
+    """Return the number of values in a JSON value.
 
-    :raises ValueError: it is too deep, or has a key or text that is too long
+    :raises ValueError: the nesting is too deep, or a text is too long
     """
     if depth > _DEEPEST:
         _refuse('fewer levels')
@@ -118,9 +124,9 @@ def _count_values(value: Any, depth: int = 0) -> int:
 
 
 def _read_look(value: Any) -> State:
-    """Return how a tile looked; a lab's own class may keep what it likes, within limits."""
-    if not isinstance(value, dict) or _count_values(value) > _MOST_VALUES:
-        _refuse('a dict of at most {} values'.format(_MOST_VALUES))
+    """Return the settings of a tile; a lab's own class may save any values, within limits."""
+    if not isinstance(value, dict) or _count_values(value) > _MAX_VALUES:
+        _refuse('a dict of at most {} values'.format(_MAX_VALUES))
     return {**value, **{key: read(value[key]) for key, read in _LOOK.items() if key in value}}
 
 
@@ -137,18 +143,12 @@ def _read_word(value: Any) -> str:
 
 
 def _read_views(value: Any) -> State:
-    """Return {view: {what was chosen in it: word, number or flag}}."""
+    """Return {view: {setting: word, number or flag}}."""
     if not isinstance(value, dict) or not all(isinstance(kept, dict) for kept in value.values()):
         _refuse('a dict for each view')
     return {view: {key: kept for key, kept in choices.items() if is_word(kept)
-                   or isinstance(kept, (bool, int, float)) and abs(kept) <= _MOST_PX}
+                   or isinstance(kept, (bool, int, float)) and abs(kept) <= _MAX_PX}
             for view, choices in value.items()}
-
-
-def _read_torn(value: Any) -> List[str]:
-    if not (isinstance(value, list) and len(value) <= MOST_ROBOTS and all(map(_is_robot, value))):
-        _refuse('names of robots')
-    return list(value)
 
 
 def _read_recording(value: Any) -> State:
@@ -158,12 +158,12 @@ def _read_recording(value: Any) -> State:
 
 
 def _by_robot(read: _Reader) -> _PartReader:
-    """Return a reader for a dict of robots that leaves out what it cannot read."""
+    """Return a reader for a dict of robots that skips unusable entries."""
     def _read(value: Any, problems: List[str], key: str) -> State:
         if not isinstance(value, dict):
             _refuse('a dict of robots')
         found = {}
-        for name, part in list(value.items())[:MOST_ROBOTS]:
+        for name, part in list(value.items())[:MAX_ROBOTS]:
             try:
                 if not _is_robot(name):
                     _refuse('the name of a robot')
@@ -178,41 +178,33 @@ def _plain(read: _Reader) -> _PartReader:
     return lambda value, problems, key: read(value)
 
 
-def _read_panel(value: Any, problems: List[str], key: str) -> State:
-    if not isinstance(value, dict):
-        _refuse('a dict')
-    return _read_parts(value, _PANEL, problems, key + '.')
+def _parts(readers: Dict[str, _PartReader]) -> _PartReader:
+    """Return a reader for a dict with these keys."""
+    def _read(value: Any, problems: List[str], key: str) -> State:
+        if not isinstance(value, dict):
+            _refuse('a dict')
+        return _read_parts(value, readers, problems, key + '.')
+    return _read
 
 
-def _read_map(value: Any, problems: List[str], key: str) -> State:
-    if not isinstance(value, dict):
-        _refuse('a dict')
-    flags = {name: _plain(_read_flag) for name in ('follow', 'turn', 'by_link')}
-    return _read_parts(value, {'shown': _plain(_read_word), **flags}, problems, key + '.')
-
-
-def _read_events(value: Any, problems: List[str], key: str) -> State:
-    if not isinstance(value, dict):
-        _refuse('a dict')
-    return _read_parts(value, {'sounds': _plain(_read_flag)}, problems, key + '.')
-
-
-_LOOK = {'views': _read_words, 'of_views': _read_views, 'recording': _read_recording,
-         'splitter': read_sizes}
-_PANEL: Dict[str, _PartReader] = {
-    'splitter': _plain(read_sizes), 'drawer': _plain(_read_flag),
-    'geometry': _plain(read_geometry), 'layout': _plain(_read_word), 'theme': _plain(_read_word),
-    'numbers': _plain(_read_flag)}
+_LOOK = {'views': _read_words, 'of_views': _read_views, 'recording': _read_recording}
 _STATE: Dict[str, _PartReader] = {
     'robots': _plain(_read_robots), 'numbers': _plain(_read_numbers), 'mode': _plain(_read_mode),
-    'windows': _by_robot(read_geometry), 'torn_off': _plain(_read_torn),
-    'looks': _by_robot(_read_look), 'panel': _read_panel, 'events': _read_events,
-    'map': _read_map}
+    'windows': _by_robot(read_geometry), 'torn_off': _plain(_read_robots),
+    'looks': _by_robot(_read_look), 'events': _parts({'sounds': _plain(_read_flag)}),
+    'panel': _parts({
+        'splitter': _plain(read_sizes), 'drawer': _plain(_read_flag),
+        'geometry': _plain(read_geometry), 'layout': _plain(_read_word),
+        'theme': _plain(_read_word), 'numbers': _plain(_read_flag),
+        'text': _plain(_read_percent)}),
+    'map': _parts({
+        'shown': _plain(_read_word), 'follow': _plain(_read_flag), 'turn': _plain(_read_flag),
+        'by_link': _plain(_read_flag)})}
 
 
 def _read_parts(value: State, readers: Dict[str, _PartReader], problems: List[str],
                 above: str) -> State:
-    """Return what the readers can read of a dict; report why not for the rest."""
+    """Return the usable parts of a dict; report problems of the others."""
     found = {}
     for key, read in readers.items():
         if key in value:
@@ -223,10 +215,24 @@ def _read_parts(value: State, readers: Dict[str, _PartReader], problems: List[st
     return found
 
 
-def usable_state(state: Any) -> Tuple[State, Tuple[str, ...]]:
-    """Return (the usable part of a kept state, why each other part is not).
+def numbers_of(state: Any) -> State:
+    """Return only the numbers of robots, which are permanent: what a fresh start restores."""
+    return {'numbers': state.get('numbers', {})} if isinstance(state, dict) else {}
 
-    :param state: whatever was read
+
+def without_robots(state: Any) -> State:
+    """Return how the screen looks and sounds: what simulated runs keep, for themselves.
+
+    Their robots are others each time; so are what drives, tiles and the map.
+    """
+    return {key: state[key] for key in ('panel', 'events')
+            if key in state} if isinstance(state, dict) else {}
+
+
+def usable_state(state: Any) -> Tuple[State, Tuple[str, ...]]:
+    """Return (the usable parts of a saved state, problems of the other parts).
+
+    :param state: the state as read from the file, not validated
     """
     if not isinstance(state, dict):
         return {}, ('expected a dict',)

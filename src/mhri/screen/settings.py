@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a lab can set for the screen by parameters: camera budget, disk reserves and more."""
+"""Parameters of the screen: camera budget, disk reserves and more."""
 from dataclasses import dataclass
 from typing import Any, Dict, List, Tuple
 
@@ -12,14 +12,13 @@ NAMESPACE = '/mhri/panel'
 
 @dataclass(frozen=True)
 class PanelSettings:
-    """The parameters below :data:`NAMESPACE`, each with its default.
+    """The parameters in :data:`NAMESPACE`, each with its default.
 
-    ``thumbnail_hz`` and ``thumbnail_width_px`` are the rate [Hz] and greatest width [px] of
+    ``thumbnail_hz`` and ``thumbnail_width_px`` are the rate [Hz] and maximum width [px] of
     pictures in small tiles; ``record_warn_free_mb`` and ``record_stop_free_mb`` are the free space
     [MB] at which a recording warns, and at which it stops and closes its file. ``slow_with_link``
-    slows all selected robots down with the slowest of their links. ``camera_budget_mbit_s`` is what
-    all pictures together may take of the network [Mbit/s], 0 for no limit
-    (:mod:`mhri.camera.budget`).
+    slows all selected robots down with the slowest of their links. ``camera_budget_mbit_s`` is the
+    bandwidth for all pictures together [Mbit/s], 0 for no limit (:mod:`mhri.camera.budget`).
     """
 
     thumbnail_hz: float = 5.0
@@ -30,12 +29,12 @@ class PanelSettings:
     camera_budget_mbit_s: float = 0.0
 
     def recording_limits(self) -> RecordingLimits:
-        """Return the :class:`RecordingLimits` that these settings ask for."""
+        """Return the :class:`RecordingLimits` of these settings."""
         return RecordingLimits(warn_free_bytes=round(self.record_warn_free_mb * MB),
                                stop_free_bytes=round(self.record_stop_free_mb * MB))
 
 
-# Key: least and greatest value.
+# {key: (minimum, maximum)}.
 _RANGES = {'thumbnail_hz': (0.1, 60.0), 'thumbnail_width_px': (32.0, 4096.0),
            'record_warn_free_mb': (1.0, 1e9), 'record_stop_free_mb': (1.0, 1e9),
            'camera_budget_mbit_s': (0.0, 1e5)}
@@ -44,9 +43,9 @@ _FLAGS = ('slow_with_link',)
 
 
 def _read(section: Section, key: str) -> Any:
-    """Return one setting, or its default if it is not given.
+    """Return one setting, or its default if missing.
 
-    :raises ConfigError: it cannot be used
+    :raises ConfigError: the value is invalid
     """
     default = getattr(PanelSettings, key)
     if key in _FLAGS:
@@ -57,10 +56,10 @@ def _read(section: Section, key: str) -> Any:
 def parse_settings(parameters: Any,
                    before: PanelSettings = PanelSettings()
                    ) -> Tuple[PanelSettings, List[ConfigError]]:
-    """Return (PanelSettings, [ConfigError]); unusable ones stay as they were.
+    """Return (PanelSettings, [ConfigError]); invalid parameters keep their previous values.
 
-    :param parameters: the parameters below the namespace: a dict, or None
-    :param before: the settings in force
+    :param parameters: dict of the parameters in the namespace, or None
+    :param before: the current settings
     """
     errors = []
     try:

@@ -1,40 +1,43 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The line at the bottom of the screen: the one thing that matters now."""
+"""The line at the bottom of the screen, with the most important message."""
 from typing import Optional, Tuple
 
+from mhri.base import reasons
 from mhri.base.battery import battery_level, FINE, FLAT
-from mhri.base.views import (
-    GONE, PanelView, ROS_CONNECTED, ROS_CUT_OFF, ROS_STARTING, SILENT, UNANSWERED)
+from mhri.base.names import listed
+from mhri.base.reasons import Reason
+from mhri.base.views import GONE, ROS_CONNECTED, ROS_CUT_OFF, ROS_STARTING, ScreenView, SILENT
 from mhri.driving.stop_words import stop_words
 from mhri.screen.asked import asked_and_done
 
 CALM = 'calm'
 ATTENTION = 'attention'
 STOPPED = 'stopped'
-# A sentence and its level.
+#: between the robots, their source and its state
+BETWEEN = '  \u2013  '
+# (sentence, level).
 _Line = Tuple[str, str]
 
 
-def status_line(view: PanelView, waits_for: Optional[str], master_uri: str = '') -> _Line:
-    """Return who is driven, by what and what it waits for; or what keeps everything from working.
+def status_line(view: ScreenView, master_uri: str = '') -> _Line:
+    """Return the driven robots, their source and what it waits for; or why none can be driven.
 
-    :param view: :class:`mhri.base.views.PanelView`, its status not yet filled
-    :param waits_for: the last word of ``/mux/waits_for``; None if the mux has not been heard
+    :param view: :class:`mhri.base.views.ScreenView` without its status
     :returns: (sentence, level), never empty
     """
-    for rule in (_no_ros, _stopped, _no_mux, _no_gates):
-        line = rule(view, waits_for, master_uri)
+    for rule in (_no_ros, _stopped, _no_service):
+        line = rule(view, master_uri)
         if line:
             return line
     for rule in (_not_ours, _no_robots, _lost_robot):
-        line = rule(view, waits_for, master_uri)
+        line = rule(view, master_uri)
         if line:
             return _with_batteries(view, line)
-    return _with_batteries(view, _driving(view, waits_for))
+    return _with_batteries(view, _driving(view))
 
 
-def _no_ros(view: PanelView, _: Optional[str], master_uri: str) -> Optional[_Line]:
+def _no_ros(view: ScreenView, master_uri: str) -> Optional[_Line]:
     if view.ros == ROS_STARTING:
         return 'connecting to ROS', CALM
     if view.ros == ROS_CUT_OFF:
@@ -45,31 +48,23 @@ def _no_ros(view: PanelView, _: Optional[str], master_uri: str) -> Optional[_Lin
     return None
 
 
-def _stopped(view: PanelView, _: Optional[str], __: str) -> Optional[_Line]:
+def _stopped(view: ScreenView, _: str) -> Optional[_Line]:
     if view.stop_all:
         return stop_words(view.robots, view.stop_taken, view.answers).sentence, STOPPED
     return None
 
 
-def _no_mux(view: PanelView, _: Optional[str], __: str) -> Optional[_Line]:
-    if view.mode is None:
-        return 'what decides who drives is not running: close this and start mhri again', ATTENTION
-    return None
+def _no_service(view: ScreenView, _: str) -> Optional[_Line]:
+    return None if view.answers else (Reason(reasons.DRIVE_SILENT).sentence, ATTENTION)
 
 
-def _no_gates(view: PanelView, _: Optional[str], __: str) -> Optional[_Line]:
-    if not view.answers:
-        return UNANSWERED + ': no robot can be driven, and those that were stand', ATTENTION
-    return None
-
-
-def _not_ours(view: PanelView, _: Optional[str], __: str) -> Optional[_Line]:
+def _not_ours(view: ScreenView, _: str) -> Optional[_Line]:
     if not view.control.ours:
-        return 'only looking on: {} drives'.format(view.control.who or 'somebody else'), CALM
+        return 'read-only: {} is in control'.format(view.control.words), CALM
     return None
 
 
-def _no_robots(view: PanelView, _: Optional[str], __: str) -> Optional[_Line]:
+def _no_robots(view: ScreenView, _: str) -> Optional[_Line]:
     if not view.robots:
         return 'no robots yet: look for connected bots, or add one by its name', CALM
     if not any(robot.selected for robot in view.robots):
@@ -80,7 +75,7 @@ def _no_robots(view: PanelView, _: Optional[str], __: str) -> Optional[_Line]:
     return None
 
 
-def _lost_robot(view: PanelView, _: Optional[str], __: str) -> Optional[_Line]:
+def _lost_robot(view: ScreenView, _: str) -> Optional[_Line]:
     for robot in view.robots:
         if robot.selected and robot.link == SILENT:
             return '{} has sent {}'.format(robot.name, robot.note), ATTENTION
@@ -89,37 +84,46 @@ def _lost_robot(view: PanelView, _: Optional[str], __: str) -> Optional[_Line]:
     return None
 
 
-def _driving(view: PanelView, waits_for: Optional[str]) -> _Line:
-    """Return who is driven, by what, and what it waits for."""
+def _driving(view: ScreenView) -> _Line:
+    """Return the driven robots, their source, and what it waits for."""
     mode = view.mode or ''
     label = dict(view.sources).get(mode, mode)
     if not view.dead_man:
         label += ' (no dead-man button)'
-    count = sum(robot.selected for robot in view.robots)
-    who = '{} of {} robots'.format(count, len(view.robots))
+    who = 'Driving ' + listed([robot.name for robot in view.robots if robot.selected])
     absent = [device.note for device in view.devices if device.source == mode and device.absent]
     if absent:
         return '{}: {}'.format(label, absent[0]), ATTENTION
-    if view.advice and waits_for == 'source':
-        return '{}  \u2013  {}'.format(who, view.advice), ATTENTION
-    words = {'neutral': 'centre the stick to drive',
-             'source': 'nothing is heard from it yet',
-             'enabling': 'press the enabling pedal to drive',
-             'dead_man': 'hold the dead-man button to drive'}.get(waits_for or '')
-    if words:
-        return '{}  \u2013  {}  \u2013  {}'.format(who, label, words), \
-            ATTENTION if waits_for in ('source', 'neutral') else CALM
+    waits = waits_words(view)
+    if waits:
+        between = ': ' if _advised(view) else BETWEEN
+        return who + BETWEEN + label + between + waits, \
+            CALM if view.waits_for in (reasons.ENABLING, reasons.DEAD_MAN) else ATTENTION
     waiting = [robot.name for robot in view.robots if robot.selected and robot.waits]
     if waiting:
-        return '{}  \u2013  {}  \u2013  {}: centre the stick to drive'.format(
-            who, label, ', '.join(waiting)), ATTENTION
+        return BETWEEN.join((who, label, '{}: {}'.format(
+            ', '.join(waiting), Reason(reasons.JOINING).what))), ATTENTION
     driven = any(robot.driven and robot.selected for robot in view.robots)
-    state = asked_and_done(view.robots) or ('driving' if driven else 'ready')
-    return '{}  \u2013  {}  \u2013  {}'.format(who, label, state), CALM
+    state = asked_and_done(view.robots) or ('moving' if driven else 'ready')
+    return BETWEEN.join((who, label, state)), CALM
 
 
-def _with_batteries(view: PanelView, line: _Line) -> _Line:
-    """Add the robots with low batteries, the emptiest first, to what the line says."""
+def _advised(view: ScreenView) -> bool:
+    """Return whether it is known why the active source cannot drive."""
+    return view.advice is not None and view.waits_for == reasons.SOURCE
+
+
+def waits_words(view: ScreenView) -> str:
+    """Return what keeps all robots from moving, except STOP ALL; '' for nothing."""
+    if view.advice is not None and _advised(view):
+        return view.advice.sentence
+    names = ('it',) if view.waits_for == reasons.SOURCE else ()
+    return Reason(view.waits_for, names).what if view.waits_for not in (
+        '', reasons.RELEASE) else ''
+
+
+def _with_batteries(view: ScreenView, line: _Line) -> _Line:
+    """Append the robots with low batteries to a line, the lowest first."""
     low = sorted((robot.battery, robot.name) for robot in view.robots
                  if robot.battery is not None and battery_level(robot.battery) != FINE)
     if not low:

@@ -2,9 +2,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Draws a cloud into a picture with numpy: no GPU, and only pixels go to a remote screen.
 
-It sorts the points by their distance from the eye and puts their ranks into a buffer; near points
-become squares, by the least rank of a neighbourhood, so that nothing far ever covers anything near.
-The ground is dark on every desktop, as a camera's picture has its own colours, too.
+The points are sorted by distance from the eye, and their ranks put into a buffer, in which near
+points become squares: each pixel takes the nearest point of its neighbourhood, so that no far point
+covers a near one. The background is dark on every desktop, as a camera's picture is independent of
+the theme, too.
 """
 import math
 from typing import NamedTuple, Optional, Sequence, Tuple
@@ -26,7 +27,7 @@ _AHEAD, _LEFT, _UP = 0xffe69f00, 0xff009e73, 0xff56b4e9
 _FROM_OPTICAL = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
 _SAMPLES = 20_000
 # No sensor's intensity is larger, and differences between such values do not overflow.
-_MOST = np.float32(1e30)
+_MAX_INTENSITY = np.float32(1e30)
 # The width of a point [m], and the sides it can have on the screen [px].
 _POINT_M = 0.02
 _SIDES_PX = (2, 3, 5)
@@ -44,12 +45,12 @@ _FOLLOWERS = {HEIGHT: (0.5, -math.inf), DISTANCE: (0.5, 0.0), INTENSITY: (1e-3, 
 
 
 class Picture(NamedTuple):
-    """A drawn cloud: ``pixels`` uint32 (h, w), each 0xffrrggbb, and what they mean.
+    """A drawn cloud: ``pixels``, uint32 (h, w), each 0xffrrggbb, and their scale.
 
     ``scale`` is the range of the colours, in metres or the unit of the intensity, None if the
     points have colours of their own; ``grid_m`` the spacing of the lines on the floor,
-    ``colouring`` what the colours mean. ``cut``: whatever is more than :data:`CEILING_M` above the
-    floor is left out.
+    ``colouring`` the meaning of the colours. ``cut``: points more than :data:`CEILING_M` above the
+    floor are left out.
     """
 
     pixels: np.ndarray
@@ -60,7 +61,7 @@ class Picture(NamedTuple):
 
 
 def _table() -> np.ndarray:
-    """Return 256 colours as 0xffrrggbb: viridis without its darkest, which the ground would hide.
+    """Return 256 colours as 0xffrrggbb: viridis without the darkest, invisible on the background.
 
     Its lightness grows evenly, so people with any of the usual colour deficiencies can read it.
     """
@@ -84,7 +85,7 @@ def colourings(cloud: Cloud) -> Tuple[str, ...]:
 
 
 class CloudArtist:
-    """Draws the clouds of one sensor; the scales follow what is seen without flickering.
+    """Draws the clouds of one sensor; the scales follow the clouds without flickering.
 
     One thread at a time.
     """
@@ -96,7 +97,7 @@ class CloudArtist:
         """Return the :class:`Picture` of a cloud.
 
         :param size: (width, height) of the picture [px], > 0
-        :param colouring: of :func:`colourings`; one that the cloud lacks counts as height
+        :param colouring: one of :func:`colourings`; height if the cloud does not have it
         """
         if colouring not in colourings(cloud):
             colouring = HEIGHT
@@ -117,7 +118,7 @@ class CloudArtist:
         return Picture(pixels, scale, grid_m, colouring, not low.all())
 
     def _follow(self, key: str, values: np.ndarray, now: float) -> Optional[Range]:
-        """Return the range of some values after one more cloud."""
+        """Return the range of the scale of some values after one more cloud."""
         return self._followers[key].follow(values[::max(1, len(values) // _SAMPLES)], now)
 
     def _colours(self, cloud: Cloud, colouring: str, heights: np.ndarray,
@@ -129,7 +130,7 @@ class CloudArtist:
         if colouring == DISTANCE:
             values = np.sqrt(sum(np.square(column) for column in cloud.points.T))
         elif colouring == INTENSITY and cloud.intensity is not None:
-            values = np.clip(np.nan_to_num(cloud.intensity), -_MOST, _MOST)
+            values = np.clip(np.nan_to_num(cloud.intensity), -_MAX_INTENSITY, _MAX_INTENSITY)
         if colouring != HEIGHT:
             scale = self._follow(colouring, values, cloud.received_s)
         low, high = scale or (0.0, 1.0)
@@ -174,11 +175,11 @@ def _splat(pixels: np.ndarray, cloud: Cloud, colours: np.ndarray, orbit: Orbit,
         seen = np.flatnonzero(wanted & (ahead > near) & (x >= 0) & (x < width)
                               & (y >= 0) & (y < height))
     closeness = closeness[seen]
-    # 16 bits are enough to tell what is in front, and sort in a tenth of the time.
+    # 16 bits suffice for the order in depth, and are sorted in a tenth of the time.
     far_first = np.argsort((closeness * (near * 65535)).astype(np.uint16), kind='stable')
     seen, closeness = seen[far_first], closeness[far_first]
     place = y[seen].astype(np.int32) * width + x[seen].astype(np.int32)
-    # float32 holds ranks exactly, and OpenCV quickly finds the greatest float32 of a neighbourhood.
+    # float32 holds ranks exactly, and OpenCV dilates float32 quickly.
     ranks = np.zeros(pixels.shape, np.float32)
     ranks.reshape(-1)[place] = np.arange(1, len(seen) + 1, dtype=np.float32)
     ranks = _grown(ranks, closeness, focal, len(cloud.points))
@@ -191,8 +192,8 @@ def _splat(pixels: np.ndarray, cloud: Cloud, colours: np.ndarray, orbit: Orbit,
 def _grown(ranks: np.ndarray, closeness: np.ndarray, focal: float, count: int) -> np.ndarray:
     """Return a buffer of ranks in which near points are squares.
 
-    :param closeness: of each rank, growing: 1 / distance ahead [1/m]
-    :param count: number of points of the cloud: the points of a sparse one are all drawn larger
+    :param closeness: of each rank, ascending: 1 / distance ahead [1/m]
+    :param count: number of points of the cloud: all points of a sparse cloud are drawn larger
     """
     grown = ranks
     for side in _SIDES_PX:
@@ -206,7 +207,7 @@ def _grown(ranks: np.ndarray, closeness: np.ndarray, focal: float, count: int) -
 
 
 def _bytes(pixels: np.ndarray) -> np.ndarray:
-    """Return pixels as OpenCV takes them, (h, w, 4): blue, green, red, alpha, as in memory."""
+    """Return pixels as OpenCV's channels, (h, w, 4): blue, green, red, alpha, as in memory."""
     return pixels.view(np.uint8).reshape(pixels.shape + (4,))
 
 
@@ -254,7 +255,7 @@ class _Pen:
             share = depths[line, begin] / (depths[line, begin] - depths[line, end])
             ends[line, begin] += share * (ends[line, end] - ends[line, begin])
         places = projected(ends.reshape(-1, 3), self._orbit, self._size)[:, :2]
-        # OpenCV takes whole numbers of 32 bits, and counts a pixel from its middle.
+        # OpenCV requires 32-bit integers, and has whole numbers at the centres of pixels.
         corners = np.clip(places - 0.5, -20_000, 20_000).round().astype(np.int32)
         colour = [ink & 255, ink >> 8 & 255, ink >> 16 & 255, 255]
         cv2.polylines(self._image, list(corners.reshape(-1, 2, 2)), False, colour, thickness,

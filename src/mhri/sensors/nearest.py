@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The nearest thing that a laser scanner sees, and where it is: one line for the operator."""
+"""The nearest obstacle of a laser scan and its direction: one line for the operator."""
 import math
 from dataclasses import dataclass
 from typing import Optional, Sequence
@@ -9,32 +9,32 @@ import numpy as np
 
 from mhri.base.plausible import BOUNDS, RANGE
 
-# An older scan is not put into words [s].
+# An older scan is not described [s].
 OLD_S = 1.0
-# From ahead to the left, an eighth of a turn each.
+# Eighths of a turn, from ahead to the left.
 DIRECTIONS = ('ahead', 'ahead left', 'left', 'behind left', 'behind', 'behind right', 'right',
               'ahead right')
 
 
 @dataclass(frozen=True)
 class Nearest:
-    """How far the nearest thing is [m], and where: one of :data:`DIRECTIONS`."""
+    """The distance of the nearest obstacle [m] and its direction, one of :data:`DIRECTIONS`."""
 
     distance_m: float
     direction: str
 
     def words(self) -> str:
-        """Return it as a person would say it."""
-        return '{:.2f} m to the nearest thing, {}'.format(self.distance_m, self.direction)
+        """Return a text for the operator."""
+        return '{:.2f} m clear, {}'.format(self.distance_m, self.direction)
 
 
 def nearest(ranges: Sequence[float], angle_min: float,
             angle_increment: float) -> Optional[Nearest]:
-    """Return the :class:`Nearest` of a scan, None if it sees nothing.
+    """Return the :class:`Nearest` of a scan, None if no beam measured anything.
 
-    :param ranges: distances [m]; NaN, infinity and impossible values are left out
+    :param ranges: distances [m]; NaN, infinity and impossible values are ignored
     :param angle_min: angle of the first one [rad], 0 ahead, left positive; may be off by full turns
-    :param angle_increment: from one to the next [rad], negative for a scanner upside down
+    :param angle_increment: angle between beams [rad], negative for a scanner upside down
     """
     distances = np.asarray(ranges, dtype=float)
     with np.errstate(invalid='ignore'):

@@ -1,12 +1,12 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What each beam of a laser scan says: measured, "nothing there", or not measured at all.
+"""The meaning of each beam of a laser scan: measured, "nothing there", or not measured at all.
 
 One rule for the brakes, the map and the views; the guard on the robot has a copy of it. A robot's
-type says which values mean "nothing there" (``no_return``), REP 117 where it is silent: +inf. They
-are looked for before the bounds. A range equal to ``range_max`` is no return, either (Stage, older
-Gazebo, as amcl takes it). Everything else outside the bounds was not measured: NaN, -inf, 0,
-negative, below ``range_min`` or above ``range_max``.
+type defines the values for "nothing there" (``no_return``); the default is +inf, by REP 117. They
+are checked before the bounds. A range equal to ``range_max`` means "nothing there", too (Stage,
+older Gazebo; amcl reads it the same way). Everything else outside the bounds was not measured: NaN,
+-inf, 0, negative, below ``range_min`` or above ``range_max``.
 """
 from collections import deque
 import math
@@ -14,26 +14,26 @@ from typing import Deque, Mapping, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 
-from mhri.base.mocap import Pose
+from mhri.base.geometry import Pose
 from mhri.base.plausible import BOUNDS, RANGE
 
-# No beam returned, by REP 117.
+# The value of a beam without a return, by REP 117.
 NO_RETURN = (math.inf,)
 # A laser whose share of measuring beams falls from this to nothing within this time is dead [s].
 FELL_FROM, FELL_WITHIN_S = 1.0 / 3.0, 1.0
-# Unless the robot has turned by so much of its field of view; or, if it was not looked at for
-# longer, has moved by so much [m].
+# Unless the robot has turned by this share of the field of view; or, if the previous scan is older
+# than that, has moved this far [m].
 TURNED_SHARE, MOVED_M = 0.25, 0.5
-# A laser whose least range is greater tells nothing by "nothing there" [m].
-MOST_NEAR_M = 1.5
+# "Nothing there" is not used from a laser with a longer blind distance [m].
+MAX_NEAR_M = 1.5
 _SAME_M = 1e-3
 
 
 class Readings(NamedTuple):
-    """What beams say: ranges [m], NaN where nothing was measured; and where nothing is there.
+    """The beams of a scan: ranges [m], NaN if not measured, and masks of "nothing there".
 
-    ``free`` says so by a value that only a working laser sends; ``unsure`` by one that may as well
-    come from a dead one, or from what is too near.
+    ``free``: by a value that only a working laser sends; ``unsure``: by one that a dead laser, or
+    one with an obstacle too close to it, may send as well.
     """
 
     ranges: np.ndarray
@@ -42,14 +42,14 @@ class Readings(NamedTuple):
 
     @property
     def sure_share(self) -> float:
-        """Share of the beams that a dead laser would not send."""
+        """The share of beams that a dead laser would not send."""
         sure = np.isfinite(self.ranges) | self.free
         return float(sure.mean()) if len(sure) else 0.0
 
 
 def no_return_of(values: Mapping[Optional[float], Tuple[float, ...]],
                  range_max: float) -> Tuple[float, ...]:
-    """Return the values that mean "nothing there" from a laser of that reach.
+    """Return the values that mean "nothing there" from a laser with that maximum range.
 
     :param values: {range_max of a laser [m], None for any other: values}
     """
@@ -60,9 +60,9 @@ def no_return_of(values: Mapping[Optional[float], Tuple[float, ...]],
 
 
 def bounds_of(range_min: float, range_max: float) -> Tuple[float, float]:
-    """Return what a sensor says it can measure, at least and at most [m].
+    """Return the stated minimum and maximum range of a sensor [m].
 
-    NaN and absurd values do not count.
+    NaN and absurd values are replaced by general bounds.
     """
     bound = BOUNDS[RANGE]
     return (range_min if range_min > bound.least else bound.least,
@@ -71,7 +71,7 @@ def bounds_of(range_min: float, range_max: float) -> Tuple[float, float]:
 
 def read_ranges(ranges: Sequence[float], range_min: float, range_max: float,
                 no_return: Sequence[float] = NO_RETURN) -> Readings:
-    """Return what the beams of a scan say.
+    """Return the :class:`Readings` of a scan.
 
     :param range_min: see :func:`bounds_of`
     :param no_return: values that mean "nothing there"
@@ -93,13 +93,13 @@ def read_ranges(ranges: Sequence[float], range_min: float, range_max: float,
 
 def blind_distances(readings: Readings, step_rad: float, near_m: float,
                     half_m: float) -> np.ndarray:
-    """Return up to which distance each beam says nothing [m]: inf where it says nothing at all.
+    """Return the blind distance of each beam [m], inf for an unusable beam.
 
-    What is nearer than ``near_m`` may hide behind a beam that is unsure, unless beams measured far
-    beyond it close by on both sides: no thing as wide as the robot is there.
+    An obstacle nearer than ``near_m`` can hide in an unsure beam, unless close beams on both sides
+    measured far beyond it: then nothing as wide as the robot is there.
 
-    :param near_m: 0 where nothing that is too near could be outside the robot; inf where such a
-        beam tells nothing
+    :param near_m: 0 if anything too near to be measured is within the robot; inf if unsure beams
+        are unusable
     :param half_m: half the width of the robot
     """
     measured = np.isfinite(readings.ranges)
@@ -116,19 +116,19 @@ def blind_distances(readings: Readings, step_rad: float, near_m: float,
     else:
         begin = 0
     places = np.arange(len(far))
-    before = np.maximum.accumulate(np.where(far, places, -len(far)))
-    after = np.minimum.accumulate(np.where(far, places, 2 * len(far))[::-1])[::-1]
+    before = np.maximum.accumulate(np.where(far, places, -slack - 1))
+    after = np.minimum.accumulate(np.where(far, places, len(far) + slack)[::-1])[::-1]
     flanked = ((places - before <= slack) & (after - places <= slack))[begin:begin + count]
     found[flanked & readings.unsure] = 0.0
     return found
 
 
 class LaserLife:
-    """Whether a laser is alive whose "nothing there" may as well come from a dead one.
+    """Judges whether a laser is alive if a dead one may send its "nothing there" as well.
 
-    It is not before it has measured anything, nor after the share of its measuring beams fell
-    from a third to nothing within a second, though the robot hardly turned, until it measures
-    again. A share that falls gradually is a hall.
+    It counts as dead before its first measurement, and after the share of its measuring beams fell
+    from a third to zero within a second while the robot hardly turned, until it measures again. A
+    gradual fall means open space, such as a hall.
     """
 
     def __init__(self) -> None:
@@ -137,7 +137,7 @@ class LaserLife:
         self._past: Deque[Tuple[float, float, Pose]] = deque()
 
     def look(self, sure_share: float, pose: Pose, at_s: float, field_rad: float) -> bool:
-        """Return whether it is alive, given a scan that says "nothing there" where it is unsure.
+        """Handle a scan; return whether the laser is alive.
 
         :param pose: of the robot, by its odometry
         :param field_rad: its field of view
@@ -147,7 +147,7 @@ class LaserLife:
         elif not self._dead:
             self._dead = not self._measured or self._fell(pose, at_s, field_rad)
         self._past.append((at_s, sure_share, pose))
-        # The newest before stays: it may have been looked at last long ago.
+        # Keep the previous scan whatever its age: scans may be far apart.
         while len(self._past) > 2 and at_s - self._past[0][0] > FELL_WITHIN_S:
             self._past.popleft()
         return not self._dead

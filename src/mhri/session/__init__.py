@@ -1,3 +1,3 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The session: what is kept of a mission, replayed and reported."""
+"""The session: recording, replay and report of a mission."""

@@ -1,13 +1,13 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The result of a drill, as it lies beside what was recorded of it, and its figures as a table."""
+"""The result of a drill, read from the file in its session, and its figures as a table."""
 from typing import Any, Dict, List, Mapping, Sequence, Tuple
 
 from mhri.base.config import parse_yaml
 
 FORMAT = 1
 FILE = 'drill.yaml'
-# (key of a result, label, unit) of the figures that runs are compared by.
+# (key of a result, label, unit) of the figures for comparing runs.
 FIGURES = (
     ('time_s', 'time', 's'), ('found', 'targets found', ''), ('contacts', 'contacts', ''),
     ('distance_m', 'distance', 'm'), ('driven_s', 'time driven', 's'),
@@ -19,7 +19,7 @@ FIGURES = (
 def read_result(text: str, origin: str) -> Dict[str, Any]:
     """Return the result in a ``drill.yaml``.
 
-    :raises ConfigError: it is not one, or that of a newer version
+    :raises ConfigError: the text is not a result, or of another format version
     """
     top = parse_yaml(text, origin)
     if top.index('format') != FORMAT:
@@ -34,7 +34,7 @@ def read_result(text: str, origin: str) -> Dict[str, Any]:
 
 
 def shown(key: str, result: Mapping[str, Any], unit: str = '') -> str:
-    """Return a figure of a result with its unit, "-" where it is not known."""
+    """Return a figure of a result with its unit, "-" if unknown."""
     value = result[key]
     if value is None:
         return '-'
@@ -45,6 +45,6 @@ def shown(key: str, result: Mapping[str, Any], unit: str = '') -> str:
 
 
 def rows_of(results: Sequence[Mapping[str, Any]]) -> List[Tuple[str, ...]]:
-    """Return the table of one run, or of several side by side: (label, figure of each)."""
+    """Return the table of one or more runs: rows of (label, figure of each run)."""
     return [(label, *(shown(key, result, unit) for result in results))
             for key, label, unit in FIGURES]

@@ -1,23 +1,24 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Bags of other programs: which robots are in them, by the names and types of their topics."""
+"""Bags of other programs: robots recognized by the names and types of topics."""
 import re
 from typing import Any, Dict, Iterable, List, Mapping, Optional, Tuple
 
 from mhri.base.names import name_problem, topic_of
 from mhri.base.numbers import natural_key
 from mhri.base.robot_types import RobotType
+from mhri.base.text import listed
 from mhri.recording.folder import NotASession
 
-#: types that would move a robot: never published by a replay
+#: types that could move a robot; a replay never publishes them
 VELOCITY_TYPES = frozenset((
     'geometry_msgs/Twist', 'geometry_msgs/TwistStamped', 'geometry_msgs/TwistWithCovariance',
     'geometry_msgs/TwistWithCovarianceStamped', 'mhri/TeamTwist'))
-# Nor what somebody asked for: it is shown by what came of it.
-_INPUTS = ('/mux_in/', '/gates_in/', '/panel_in/', '/panel/', '/mhri_session/', '/mhri_replay/',
-           '/clock', '/rosout')
+# Requests are not replayed, either; their results are.
+_INPUTS = ('/mux_in/', '/panel_in/', '/panel/', '/mhri_session/', '/mhri_replay/', '/clock',
+           '/rosout')
 _REQUESTS = ('/goal', '/cancel')
-# What each kind of topic may be of.
+# Allowed types by kind of topic.
 _SENSOR_TYPES = {
     'imu': ('sensor_msgs/Imu',), 'scan': ('sensor_msgs/LaserScan',),
     'rgb': ('sensor_msgs/Image', 'sensor_msgs/CompressedImage'),
@@ -27,26 +28,26 @@ _UNFIT = re.compile(r'[^A-Za-z0-9_]+')
 
 
 def may_be_replayed(topic: str, kind: str) -> bool:
-    """Tell whether a replay publishes a topic: nothing that asks anybody for anything."""
+    """Return whether a replay publishes a topic; commands and requests are excluded."""
     return kind not in VELOCITY_TYPES and not topic.startswith(_INPUTS) \
         and not topic.endswith(_REQUESTS)
 
 
 def name_of_file(stem: str) -> str:
-    """Return a robot's name made of that of a file, e.g. ``run_3`` of "run 3"."""
+    """Return a robot name made from a file name, e.g. ``run_3`` from "run 3"."""
     name = _UNFIT.sub('_', stem).strip('_')[:40]
     return name if name_problem(name) is None else 'robot_' + name if name else 'robot'
 
 
 def robots_of_topics(topics: Mapping[str, str], types: Mapping[str, RobotType],
                      stem: str) -> Tuple[Dict[str, Dict[str, Any]], str]:
-    """Return the robots of a bag, as ``session.yaml`` would say it, and where their topics go.
+    """Return the robots of a bag in the form of ``session.yaml``, and the prefix of their topics.
 
     :param topics: {absolute topic: ROS type}
     :param types: {name: RobotType}
-    :param stem: the file's name, for a robot without a namespace
-    :returns: ({name: {type, number, ...}}, what to put before each topic: '' or ``/<name>``)
-    :raises NotASession: nothing in it is known of any robot; the text says what would be
+    :param stem: name of the file, to name a robot without a namespace
+    :returns: ({name: {type, number, ...}}, prefix for each topic: '' or ``/<name>``)
+    :raises NotASession: no topic belongs to a known robot type; the text gives an example
     """
     spaces = {topic.split('/')[1] for topic in topics if topic.count('/') > 1}
     robots = {}
@@ -73,7 +74,7 @@ def _numbered(robots: Mapping[str, RobotType]) -> Dict[str, Dict[str, Any]]:
 
 def _kind(name: str, topics: Mapping[str, str],
           types: Mapping[str, RobotType]) -> Optional[RobotType]:
-    """Return the type that knows most of a robot's topics, None where none knows any."""
+    """Return the robot type that matches most topics, None if no topic matches."""
     scores: List[Tuple[int, bool, str]] = []
     for kind in types.values():
         known = sum(topics.get(topic_of(name, topic)) == of for topic, of in kind.known_by.items())
@@ -84,7 +85,7 @@ def _kind(name: str, topics: Mapping[str, str],
 
 
 def _matches(name: str, topics: Mapping[str, str], kind: RobotType) -> int:
-    """Return how many kinds of sensors of a type a robot has."""
+    """Return how many sensor kinds of a robot type are present."""
     found = int(_has(name, topics, kind.odometry, (kind.odometry_type,)))
     return found + sum(_has(name, topics, getattr(kind, key), of)
                        for key, of in _SENSOR_TYPES.items())
@@ -92,20 +93,19 @@ def _matches(name: str, topics: Mapping[str, str], kind: RobotType) -> int:
 
 def _has(name: str, topics: Mapping[str, str], candidates: Iterable[str],
          of: Tuple[str, ...]) -> bool:
-    """Tell whether a topic is there, as it is or below it in a transport of pictures."""
+    """Return whether a candidate topic is present, raw or with a picture transport."""
     names = [topic_of(name, topic) for topic in candidates]
     return any(kind in of and any(topic == one or topic.startswith(one + '/compressed')
                                   for one in names) for topic, kind in topics.items())
 
 
 def _speaks(name: str, topics: Mapping[str, str], kind: RobotType) -> bool:
-    """Tell whether a namespace is more than a part of a robot at the root, like /camera."""
+    """Return whether a namespace is a robot, not a part of one at the root, like /camera."""
     return _has(name, topics, kind.odometry, (kind.odometry_type,)) or _matches(
         name, topics, kind) > 1
 
 
 def _listed(topics: Mapping[str, str]) -> str:
-    """Return some topics in words."""
-    names = ['{} ({})'.format(topic, kind) for topic, kind in sorted(topics.items())[:3]]
-    more = len(topics) - len(names)
-    return (', '.join(names) + (' and {} more'.format(more) if more > 0 else '')) or 'none'
+    """Return a description of some topics."""
+    return listed(('{} ({})'.format(topic, kind) for topic, kind in sorted(topics.items())),
+                  3) or 'none'

@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The last half minute, kept in memory: what came before somebody pressed Record.
+"""A ring of the last half minute in memory, to record the time before Record was pressed.
 
-Messages are kept in chunks of half a second as they go to a bag, so that to keep them costs no more
-than to write them. With the newest latched messages from before the ring's beginning, a bag can
-begin at any chunk.
+Messages are kept in the half-second chunks that are written to bags, so that keeping them costs no
+more than writing them. The newest latched messages from before the ring's beginning are kept, too,
+so that a bag can begin at any chunk.
 """
 from collections import deque
 from typing import Any, Deque, Dict, Iterator, List, NamedTuple, Tuple
@@ -14,47 +14,47 @@ Message = Tuple[Any, int, bytes]
 
 
 class Chunk(NamedTuple):
-    """Messages that were received one after the other, at least one; ``size`` in bytes."""
+    """One or more messages received in succession; ``size`` in bytes."""
 
     messages: List[Message]
     size: int
 
     @property
     def begun_ns(self) -> int:
-        """When the first was received [ns]."""
+        """The receipt time of the first message [ns]."""
         return self.messages[0][1]
 
     @property
     def ended_ns(self) -> int:
-        """When the last was received [ns]."""
+        """The receipt time of the last message [ns]."""
         return self.messages[-1][1]
 
 
 class Latched:
-    """The newest message of every latched publisher, as of some moment."""
+    """The newest message of every latched publisher, as of one moment."""
 
     def __init__(self) -> None:
         self._newest: Dict[Any, bytes] = {}
 
-    def see(self, chunk: Chunk) -> None:
-        """Go on to the end of a chunk."""
+    def update(self, chunk: Chunk) -> None:
+        """Advance to the end of a chunk."""
         for publisher, _, frame in chunk.messages:
             if publisher.fields.get('latching') == '1':
                 self._newest[publisher] = frame
 
     def forget(self, publisher: Any) -> None:
-        """Leave out a publisher that is of no concern any more."""
+        """Drop a publisher that is gone."""
         self._newest.pop(publisher, None)
 
     def at(self, time_ns: int) -> List[Message]:
-        """Return what a bag that begins at a time [ns] has to begin with."""
+        """Return the first messages of a bag that begins at a time [ns]."""
         return [(publisher, time_ns, frame) for publisher, frame in self._newest.items()]
 
 
 class Ring:
-    """The newest chunks, at most so long [s] and so large [bytes].
+    """The newest chunks, limited in duration [s] and size [bytes].
 
-    :param latched: told of every chunk that leaves the ring, also on :meth:`take`
+    :param latched: updated with every chunk that leaves the ring, also on :meth:`take`
     """
 
     def __init__(self, lasts_s: float, most_bytes: int, latched: Latched) -> None:
@@ -62,11 +62,11 @@ class Ring:
         self._most_bytes = most_bytes
         self._latched = latched
         self._chunks: Deque[Chunk] = deque()
-        #: how many bytes it keeps
+        #: current size [bytes]
         self.size = 0
 
     def put(self, chunk: Chunk) -> None:
-        """Keep a chunk, and let go what is too old or too much."""
+        """Add a chunk; drop the oldest while a limit is exceeded."""
         self._chunks.append(chunk)
         self.size += chunk.size
         while self._chunks and (self.size > self._most_bytes or
@@ -76,10 +76,10 @@ class Ring:
     def _let_go(self) -> None:
         chunk = self._chunks.popleft()
         self.size -= chunk.size
-        self._latched.see(chunk)
+        self._latched.update(chunk)
 
     def take(self) -> Iterator[Chunk]:
-        """Yield its chunks, and empty it; each has left the ring when the next one is asked for."""
+        """Yield and remove the chunks; each leaves the ring when the next one is requested."""
         while self._chunks:
             yield self._chunks[0]
             self._let_go()

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the messages of a session add up to: ways, distances, silences, links, what stops did."""
+"""Figures from the messages of a session: paths, distances, silences, links, proofs of stops."""
 from bisect import bisect_right
 from dataclasses import dataclass
 import math
@@ -8,96 +8,91 @@ from typing import Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
 
-from mhri.base.mocap import Pose
+from mhri.base.geometry import composed, Pose
 from mhri.base.opencv import cv2
 from mhri.base.robot_types import SILENT_AFTER_S
-from mhri.map.places import composed
-from mhri.robots.gate_words import NO_WITNESS
+from mhri.base.views import PROOF_STOPPED, ProofView
 from mhri.robots.link import Motion
+from mhri.robots.stop_proof import StopProof
 from mhri.session.timeline import Span
 
-# A robot that rests jitters by less than this, which is no way [m].
+# Odometry of a resting robot jitters by less than this [m].
 _STEP_M = 0.02
-# What is further than both between two readings was not driven [m, m/s].
+# A step between two readings larger than both limits is a jump, not motion [m, m/s].
 _LEAP_M, _FASTEST_MPS = 0.5, 5.0
-# What a robot did in so long [s] before a stop tells whether it stood already.
+# A reading this shortly before a stop [s] shows whether the robot stood already.
 _JUST_BEFORE_S = 1.0
+# The drive publishes its state twice a second; a state counts for this long at most [s].
+_STATE_S = 2.0
 
 
 @dataclass(frozen=True)
 class Stopped:
-    """What a robot's own odometry says of a stop.
+    """A stop according to a robot's own odometry.
 
-    ``after_s`` is from the stop to the first reading of the standstill that lasted until the
-    release, 0 for a robot that stood already, None if it moved at the end or was not heard
-    (``heard`` is false then); ``moved_m`` how far it went meanwhile; ``follows`` is false if its
-    odometry did not follow commands before, and proves nothing.
+    ``proof`` is the proof at the release, by the rule of the screen; None without messages from the
+    robot. ``moved_m`` is the distance driven during the stop, ``stood`` whether the robot stood
+    before the stop and throughout it.
     """
 
-    heard: bool = False
-    after_s: Optional[float] = None
+    proof: Optional[ProofView] = None
     moved_m: float = 0.0
-    stood_before: bool = False
-    follows: bool = True
+    stood: bool = False
+
+    @property
+    def proved(self) -> bool:
+        """Whether the robot provably stood still at the end."""
+        return self.proof is not None and self.proof.state == PROOF_STOPPED
 
     def words(self) -> str:
-        """Return it in words."""
-        if not self.heard:
-            return 'NOT CONFIRMED: nothing was heard from it'
-        if not self.follows:
-            return 'NOT CONFIRMED: ' + NO_WITNESS
-        if self.after_s is None:
-            return 'NOT CONFIRMED: it still moved at the end of the stop'
-        if self.stood_before:
-            return 'stood already'
-        return 'stood still after {:.2f} s, {:.2f} m further'.format(self.after_s, self.moved_m)
+        """Return a description."""
+        if self.proof is None:
+            return 'NOT CONFIRMED: no messages from it'
+        if not self.proved:
+            return self.proof.text
+        return 'stood already' if self.stood else '{}, {:.2f} m further'.format(
+            self.proof.text, self.moved_m)
 
 
 class _StopWatch:
     """Follows one robot through one stop."""
 
-    def __init__(self, begin_s: float, before: Optional[Tuple[float, Motion]],
-                 follows: bool) -> None:
-        self._begin_s = begin_s
-        self._follows = follows
-        self._stood_before = before is not None and before[1].is_standstill() \
-            and begin_s - before[0] < _JUST_BEFORE_S
-        self._last = before[1] if before is not None else None
+    def __init__(self, proof: StopProof, before: Optional[Motion]) -> None:
+        self.proof = proof
+        self._last = before
+        self._stood = before is not None and before.is_standstill()
         self._moved_m = 0.0
-        self._rests: Optional[float] = None
-        self._heard = False
 
-    def see(self, at_s: float, motion: Motion) -> None:
-        self._heard = True
+    def update(self, at_s: float, motion: Motion, follows: bool) -> None:
+        self.proof.follows = follows
+        self.proof.on_motion(motion, at_s)
         if self._last is not None:
             step_m = math.hypot(motion.x_m - self._last.x_m, motion.y_m - self._last.y_m)
             self._moved_m += step_m if step_m < _LEAP_M else 0.0
         self._last = motion
-        if not motion.is_standstill():
-            self._rests, self._stood_before = None, False
-        elif self._rests is None:
-            self._rests = at_s
+        self._stood = self._stood and motion.is_standstill()
 
-    def read(self) -> Stopped:
-        after_s = None if self._rests is None else max(0.0, self._rests - self._begin_s)
-        stood = self._stood_before and after_s is not None
-        return Stopped(self._heard, 0.0 if stood else after_s, self._moved_m, stood,
-                       self._follows)
+    def read(self, end_s: float) -> Stopped:
+        return Stopped(self.proof.view(end_s), self._moved_m, self._stood)
 
 
 class RobotSurvey:
-    """Collects what is recorded of one robot, in the order of time.
+    """Collects the recorded data of one robot, in chronological order.
 
-    Times are seconds from the start of the session. Impossible readings are left out.
+    Times are seconds from the start of the session. Impossible readings are ignored.
 
-    :param stops: when everything was stopped, in order of time
-    ``distance_m`` is by its odometry, ``pieces`` are its ways in the frame of the map (as far as it
-    is placed there, see ``placed``; else in that of its odometry), ``silences`` are when nothing
-    was heard of it for longer than a robot may be silent.
+    :param stops: spans of STOP ALL, in chronological order
+    :param silent_after_s: time after which the robot counts as silent, for the proof of a stop [s]
+    ``distance_m`` is by odometry; ``pieces`` are its paths, in the map's frame if ``placed``, else
+    in that of its odometry; ``silences`` are the spans without messages, each longer than
+    :data:`SILENT_AFTER_S`; ``on_tasks`` those in which a task drove it, None if the drive never
+    published a state of it.
     """
 
-    def __init__(self, stops: Sequence[Span] = ()) -> None:
+    def __init__(self, stops: Sequence[Span] = (),
+                 silent_after_s: float = SILENT_AFTER_S) -> None:
         self._stops = stops
+        self._silent_after_s = silent_after_s
         self._begins = [span.begin_s for span in stops]
         self._watches: Dict[int, _StopWatch] = {}
         self._last: Optional[Tuple[float, Motion]] = None
@@ -109,30 +104,43 @@ class RobotSurvey:
         self.distance_m = self.fastest_mps = 0.0
         self.readings = self.impossible = 0
         self.silences: List[Span] = []
+        self.on_tasks: Optional[List[Span]] = None
+        self._task_until_s: Optional[float] = None
         self.pieces: List[List[Tuple[float, float]]] = []
         self.round_trips_s: List[float] = []
 
     def on_place(self, origin: Optional[Pose]) -> None:
-        """Take in where the origin of its odometry lies on the map, None: nowhere."""
+        """Handle the pose of its odometry's origin on the map, None if not placed."""
         known = origin is not None and origin.is_finite()
         if known != (self._origin is not None):
             self._break()
         self._origin = origin if known else None
         if known and not self.placed:
-            # What it drove before in its own frame has no place on the map.
+            # The path so far, in the odometry frame, cannot be placed on the map.
             self.placed, self.pieces = True, []
 
+    def on_drive(self, at_s: float, on_task: bool) -> None:
+        """Handle whether a task drives the robot, by the drive; a state holds until the next."""
+        if self.on_tasks is None:
+            self.on_tasks = []
+        if self._task_until_s is not None:
+            begun_s = self.on_tasks[-1].begin_s
+            self.on_tasks[-1] = Span(begun_s, min(at_s, self._task_until_s))
+        if on_task and (self._task_until_s is None or at_s > self._task_until_s):
+            self.on_tasks.append(Span(at_s, at_s))
+        self._task_until_s = at_s + _STATE_S if on_task else None
+
     def on_witness(self, follows: bool) -> None:
-        """Take in whether the gates say that its odometry follows commands."""
+        """Handle whether, by the mux, the odometry follows commands."""
         self._follows = follows
 
     def on_round_trip(self, round_trip_s: float) -> None:
-        """Take in a round trip [s]; NaN: it was not known."""
+        """Handle a round trip [s], NaN if unknown."""
         if 0.0 <= round_trip_s < 3600.0:
             self.round_trips_s.append(round_trip_s)
 
     def on_motion(self, at_s: float, motion: Motion) -> None:
-        """Take in a reading of its odometry."""
+        """Handle an odometry reading."""
         if not motion.is_possible():
             self.impossible += 1
             return
@@ -150,12 +158,15 @@ class RobotSurvey:
         place = bisect_right(self._begins, at_s) - 1
         if place >= 0 and at_s < self._stops[place].end_s:
             if place not in self._watches:
+                begin_s, before = self._begins[place], self._last
+                round_trip_s = self.round_trips_s[-1] if self.round_trips_s else None
                 self._watches[place] = _StopWatch(
-                    self._begins[place], self._last, self._follows)
-            self._watches[place].see(at_s, motion)
+                    StopProof(begin_s, round_trip_s, self._silent_after_s),
+                    before[1] if before and begin_s - before[0] < _JUST_BEFORE_S else None)
+            self._watches[place].update(at_s, motion, self._follows)
 
     def _go(self, at_s: float, motion: Motion) -> None:
-        """Add to its way what it drove since the last place of it."""
+        """Extend the path and the distance by a reading."""
         if self._anchor is None or self._last is None:
             self._add(motion)
             return
@@ -189,26 +200,23 @@ class RobotSurvey:
         piece.append((pose.x_m, pose.y_m))
 
     def end(self, length_s: float) -> None:
-        """Take in that the session ends."""
+        """Handle the end of the session."""
+        if self._task_until_s is not None:
+            self.on_drive(length_s, False)
         if self._last is not None and length_s - self._last[0] > SILENT_AFTER_S:
             self.silences.append(Span(self._last[0], length_s))
 
     def stopped(self, place: int) -> Stopped:
-        """Return what it did in one of the stops, counted from 0."""
+        """Return the behaviour of the robot in a stop, by index."""
         watch = self._watches.get(place)
-        return watch.read() if watch else Stopped()
-
-    @property
-    def silent_s(self) -> float:
-        """How long it was silent, all in all [s]."""
-        return sum(span.end_s - span.begin_s for span in self.silences)
+        return watch.read(self._stops[place].end_s) if watch else Stopped()
 
     def way(self, within_m: float) -> List[np.ndarray]:
-        """Return its way in pieces (n, 2) [m], with no more corners than needed.
+        """Return its simplified path in pieces (n, 2) [m].
 
-        A place that it did not drive to, nor from, is left out, unless there is no other.
+        Pieces of a single point are left out, unless there are no others.
 
-        :param within_m: the lines may leave the way by this
+        :param within_m: maximum deviation from the path [m]
         """
         pieces = [piece for piece in self.pieces if len(piece) > 1] or \
             [piece for piece in self.pieces if piece][:1]
@@ -216,16 +224,16 @@ class RobotSurvey:
 
 
 def simplified(points: np.ndarray, within_m: float) -> np.ndarray:
-    """Return a line (n, 2) [m] with fewer corners, by Douglas and Peucker."""
+    """Return a line (n, 2) [m] simplified by the Douglas-Peucker algorithm."""
     if len(points) < 3:
         return points
-    # In single precision, so counted from its first place.
+    # OpenCV needs single precision; relative to the first point it is enough.
     near = (points - points[0]).astype(np.float32).reshape(-1, 1, 2)
     return np.asarray(cv2.approxPolyDP(near, within_m, False).reshape(-1, 2) + points[0])
 
 
 def link_words(round_trips_s: Sequence[float]) -> Tuple[str, str]:
-    """Return the middle round trip, and the one that 95 % are below; "-" where none is known."""
+    """Return the median and the 95th percentile of the round trips, "-" if unknown."""
     if not round_trips_s:
         return '-', '-'
     ordered = sorted(round_trips_s)

@@ -1,19 +1,19 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The session as a screen shows it."""
+"""The state of the session, as the screen shows it."""
 from dataclasses import dataclass
 from typing import Tuple
 
-from mhri.recording.recording import size_text
+from mhri.recording.recording import duration_text, size_text
 
-# Said once a second while it records: not heard for so long, the recorder has gone [s].
+# The state comes once a second while recording; the recorder is gone after this long without [s].
 SILENT_S = 3.5
 NOT_RUNNING = 'nothing records: the recorder is not running'
 
 
 @dataclass(frozen=True)
 class SessionView:
-    """What the recorder said last; ``there``: it is on the graph and answers."""
+    """The recorder's newest state; ``there``: the recorder is on the graph and alive."""
 
     there: bool = False
     recording: bool = False
@@ -25,27 +25,19 @@ class SessionView:
 
     @property
     def on(self) -> bool:
-        """Tell whether a session is recorded now, as far as anybody knows."""
+        """Whether a session is being recorded, as far as known."""
         return self.there and self.recording
 
     @property
     def trouble(self) -> str:
-        """What an operator has to know, '' while all is well."""
+        """A problem to show the operator, '' if none."""
         if self.recording and not self.there:
             return NOT_RUNNING
         return self.problem
 
 
-def duration_text(seconds: float) -> str:
-    """Return a duration as "00:12", from an hour on as "1:00:12"."""
-    minutes, rest = divmod(max(0, int(seconds)), 60)
-    hours, minutes = divmod(minutes, 60)
-    return '{}:{:02d}:{:02d}'.format(hours, minutes, rest) if hours else \
-        '{:02d}:{:02d}'.format(minutes, rest)
-
-
 def button_texts(view: SessionView) -> Tuple[str, ...]:
-    """Return the words of the button, the longest first."""
+    """Return the texts of the button, the longest first."""
     if view.on:
         time = 'REC ' + duration_text(view.lasts_s)
         return (time + ' !',) if view.trouble else (time,)
@@ -53,7 +45,7 @@ def button_texts(view: SessionView) -> Tuple[str, ...]:
 
 
 def tip_text(view: SessionView) -> str:
-    """Return what the button says where the pointer rests on it."""
+    """Return the tool tip of the button."""
     parts = [view.trouble] if view.trouble else []
     if view.on:
         parts.append('{}, {}; {} marks'.format(view.folder, size_text(view.bytes), view.marks))

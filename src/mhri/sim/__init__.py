@@ -1,3 +1,3 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The stand-in robot: plan, body, sensors, faults."""
+"""The simulated robot: floor plan, body, sensors, faults."""

@@ -1,10 +1,11 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a camera on a simulated robot sees: colours and depth, drawn from the floor plan.
+"""Draws the colour and depth pictures of a simulated camera from the floor plan.
 
-The camera is level, in the robot's middle, and looks ahead. Everything in the building stands
-upright, so one ray per column of the picture is enough; each ray vector advances 1 m along the
-optical axis, so its parameter is the z-depth.
+The camera is level, at the robot's centre, and faces ahead or where its head is turned. All
+surfaces of the building are upright, so one ray per column of the picture is enough; each ray
+vector advances 1 m along the optical axis, so its parameter is the z-depth. A tilt shifts the
+picture up or down, as the lens of an architect's camera: uprights stay upright.
 """
 from collections import namedtuple
 import math
@@ -20,18 +21,19 @@ DEPTH_MAX_M = 10.0
 _NEAR_M, _FAR_M = 0.02, 200.0
 _FLOOR_TO_M = 20.0
 _BAND_RATIO = 1.2
-# So that no ray slips out between two walls that share a corner.
+# Prevents rays from passing between two walls that share a corner.
 _OVERLAP = 1e-9
 _NOTHING_MM = 65535
-# Walls are drawn in strips of so many columns, each with no more rows than it needs.
+# Walls are drawn in strips of this many columns, each with only the rows it needs.
 _STRIP = 80
 _CEILING = (236, 236, 232)
 # Direction of the light on cylinders, (right, forward) as seen by the camera.
 _LIGHT = (-0.55, -0.835)
 
-View = namedtuple('View', 'x y yaw wall_m wall_share wall cylinders')
+View = namedtuple('View', 'x y yaw wall_m wall_share wall cylinders shift')
 View.__doc__ = """The meeting of one frame's rays: pose; for each column the z-depth of the wall [m]
-(inf: none), the way along it [m] and its number; the :class:`Cylinder` s, farthest first."""
+(inf: none), the way along it [m] and its number; the :class:`Cylinder` s, farthest first; by how
+many rows the horizon is below the middle of the picture."""
 
 Cylinder = namedtuple('Cylinder', 'begin end near_m far_m lit height_m colour')
 Cylinder.__doc__ = """A cylinder in columns ``begin`` to ``end``: z-depth where the rays go in and
@@ -39,16 +41,16 @@ out [m] (near: inf where it is hidden), how lit it is there (0 to 1), height [m]
 
 
 class Camera:
-    """Draws frames of one plan.
-
-    One thread at a time: frames share their buffers.
+    """Draws frames of one plan; not thread-safe, since frames share their buffers.
 
     :param plan: :class:`mhri.sim.plan.Plan`
+    :param max_shift: see :meth:`look` [rows]
     """
 
-    def __init__(self, plan):
+    def __init__(self, plan, max_shift=0):
+        self._max_shift = max_shift
         self._wall_height_m = plan.wall_height_m
-        # A camera that looks over the walls would see what is behind them.
+        # A camera above the walls would see behind them.
         self.height_m = min(CAMERA_HEIGHT_M, 0.75 * plan.wall_height_m)
         self._floor_colour = plan.floor_colour
         self._wall_colour = plan.wall_colour
@@ -61,7 +63,8 @@ class Camera:
         self._landmarks = plan.discs()
         self._landmark_looks = [(item.height_m, item.colour) for item in landmarks]
         self._right = (np.arange(WIDTH) - CENTRE_X_PX) / FOCAL_PX
-        self._down = (np.arange(HEIGHT) - CENTRE_Y_PX) / FOCAL_PX
+        # These and what follows from them have the rows of all shifts, see _rows().
+        self._down = (np.arange(-max_shift, HEIGHT + max_shift) - CENTRE_Y_PX) / FOCAL_PX
         self._down32 = self._down.astype(np.float32)[:, None]
         above = self._wall_height_m - self.height_m
         self._plane_m = np.where(self._down > 0.0, self.height_m, above) / np.abs(self._down)
@@ -69,12 +72,14 @@ class Camera:
         self._looks = None
         self._cylinder_textures = {}
 
-    def look(self, x, y, yaw, others):
-        """Return the :class:`View` from a place [m, m, rad].
+    def look(self, x, y, yaw, others, shift=0):
+        """Return the :class:`View` from a pose [m, m, rad].
 
         :param others: the other robots, a structured array with ``x, y, radius, height`` [m] and
             ``colour``, as :meth:`mhri.sim.world.World.others` returns it
+        :param shift: rows by which the horizon is below the middle of the picture
         """
+        shift = max(-self._max_shift, min(self._max_shift, shift))
         cos, sin = math.cos(yaw), math.sin(yaw)
         turn = np.array([[sin, cos], [-cos, sin]])
         start, along = (self._start - (x, y)) @ turn, self._along @ turn
@@ -88,11 +93,16 @@ class Camera:
                              for row in others]
         centres = (discs[:, :2] - (x, y)) @ turn
         cylinders = self._cylinders(centres, discs[:, 2], looks, wall_m)
-        return View(x, y, yaw, wall_m, share * self._length[wall], wall, cylinders)
+        return View(x, y, yaw, wall_m, share * self._length[wall], wall, cylinders, shift)
+
+    def _rows(self, view):
+        """Return which of the rows of all shifts are in the picture."""
+        top = self._max_shift - view.shift
+        return slice(top, top + HEIGHT)
 
     def _walls(self, start, along):
-        """Return the nearest wall of each column: z-depth, share of the way along it, number."""
-        # Walls behind the camera are not worth a ray.
+        """Return (z-depth, fraction of its length, index) of each column's nearest wall."""
+        # Walls behind the camera need no rays.
         ahead = np.flatnonzero(np.maximum(start[:, 1], start[:, 1] + along[:, 1]) > 0.0)
         if not len(ahead):
             return np.full(WIDTH, np.inf), np.zeros(WIDTH), np.zeros(WIDTH, int)
@@ -113,7 +123,7 @@ class Camera:
         """Return the visible cylinders, farthest first."""
         power = (centres ** 2).sum(axis=1) - radii ** 2
         found = []
-        # Sorted by the length of the tangent, separate round things hide each other correctly.
+        # Sorted by the length of the tangent, disjoint cylinders occlude each other correctly.
         for index in np.argsort(-power):
             (right, ahead), radius = centres[index], radii[index]
             if power[index] <= 0.0 or ahead < -radius:
@@ -140,45 +150,49 @@ class Camera:
     def depth(self, view):
         """Return the z-depth [mm] of each pixel, uint16 (480, 640), 0 beyond 10 m.
 
-        Walls, floor, ceiling and cylinders are exact but for rounding.
+        Walls, floor, ceiling and cylinders are exact except for rounding.
         """
-        picture = np.minimum(self._plane_mm, _millimetres(view.wall_m))
+        picture = np.minimum(self._plane_mm[self._rows(view)], _millimetres(view.wall_m))
         for cylinder in view.cylinders:
-            self._deepen(picture[:, cylinder.begin:cylinder.end], cylinder)
+            self._deepen(picture[:, cylinder.begin:cylinder.end], cylinder, view)
         picture[picture > DEPTH_MAX_M * 1000.0] = 0
         return picture
 
-    def _deepen(self, picture, cylinder):
-        """Draw a cylinder into its columns of a depth picture, where it is the nearest thing."""
+    def _deepen(self, picture, cylinder, view):
+        """Draw a cylinder into its columns of a depth picture, except where it is occluded."""
         top_m = cylinder.height_m - self.height_m
-        near = _millimetres(cylinder.near_m)
+        near, down = _millimetres(cylinder.near_m), self._down[self._rows(view)]
         with np.errstate(divide='ignore'):
-            edge_m = -top_m / self._down
+            edge_m = -top_m / down
         if top_m >= 0.0:
-            # Above the horizon the side ends where the ray has risen to the top.
-            first = self._first_row(top_m, cylinder.near_m)
-            edge = np.where(self._down[first:] < 0.0, edge_m[first:], np.inf)[:, None]
+            # Above the horizon the side ends where the ray rises to the top.
+            first = self._first_row(top_m, cylinder.near_m, view)
+            edge = np.where(down[first:] < 0.0, edge_m[first:], np.inf)[:, None]
             side = np.where(edge >= cylinder.near_m, near, np.uint16(_NOTHING_MM))
         else:
-            # Seen from above: the top from its far edge to its near one, then the side.
-            first = self._first_row(top_m, cylinder.far_m)
+            # The camera is above it: the top from its far to its near edge, then the side.
+            first = self._first_row(top_m, cylinder.far_m, view)
             edge = edge_m[first:, None]
             side = np.maximum(_millimetres(edge), near)
             side[edge > cylinder.far_m] = _NOTHING_MM
         part = picture[first:]
         np.minimum(part, side, out=part)
 
-    def _first_row(self, top_m, distances):
-        """Return the first row that shows things so high above the camera."""
+    @staticmethod
+    def _first_row(top_m, distances, view):
+        """Return the first row with points at a height above the camera."""
         nearest = distances.min() if top_m >= 0.0 else distances.max()
-        return int(np.clip(CENTRE_Y_PX - FOCAL_PX * top_m / nearest, 0, HEIGHT - 1))
+        return int(np.clip(CENTRE_Y_PX + view.shift - FOCAL_PX * top_m / nearest, 0, HEIGHT - 1))
 
-    def rgb(self, view):
-        """Return the colours of each pixel, uint8 (480, 640, 3), red, green, blue."""
+    def rgb(self, view, light=1.0):
+        """Return the colours of each pixel, uint8 (480, 640, 3), red, green, blue.
+
+        :param light: how bright it is, 0 to 1
+        """
         if self._looks is None:
             self._looks = _Looks(self)
         looks = self._looks
-        picture = looks.background.copy()
+        picture = looks.background[self._rows(view)].copy()
         self._paint_floor(picture, view, looks)
         tile = (textures.WALL_LEVELS * self._wall_shade[view.wall]
                 + textures.level_of(np.minimum(view.wall_m, _FAR_M)))
@@ -188,16 +202,19 @@ class Camera:
         for begin in range(0, WIDTH, _STRIP):
             strip = slice(begin, begin + _STRIP)
             self._paint(picture[:, strip], looks.wall, looks.wall_texels_per_m, across[strip],
-                        view.wall_m[strip], self._wall_height_m)
+                        view.wall_m[strip], self._wall_height_m, view)
         for cylinder in view.cylinders:
-            self._paint_cylinder(picture[:, cylinder.begin:cylinder.end], cylinder)
-        return picture
+            self._paint_cylinder(picture[:, cylinder.begin:cylinder.end], cylinder, view)
+        return picture if light >= 1.0 else cv2.convertScaleAbs(picture, picture, light)
 
     def _paint_floor(self, picture, view, looks):
         """Draw the floor as far as the farthest wall."""
         farthest = view.wall_m.max()
-        first = int(np.searchsorted(-looks.band_row_m, -farthest))
-        rows = slice(first, None)
+        # The rows with floor that are in the picture, counted from the first that can have any.
+        shift = self._rows(view).start - (len(self._down) - len(looks.band_row_m))
+        first = max(int(np.searchsorted(-looks.band_row_m, -farthest)), shift)
+        last = min(len(looks.band_row_m), HEIGHT + shift)
+        rows = slice(first, last)
         cos, sin = math.cos(view.yaw), math.sin(view.yaw)
         maps = []
         for place, heading in ((view.x, cos + self._right * sin),
@@ -206,36 +223,35 @@ class Camera:
             texels += (looks.band_middle[rows]
                        + np.float32(place % textures.FLOOR_PERIOD_M) * looks.band_texels[rows])
             maps.append(texels)
-        shift = HEIGHT - len(looks.band_row_m)
         for begin, end, texture in looks.bands:
-            begin = max(begin, first)
+            begin, end = max(begin, first), min(end, last)
             if begin < end:
                 cv2.remap(texture, maps[0][begin - first:end - first],
                           maps[1][begin - first:end - first], cv2.INTER_LINEAR,
-                          dst=picture[begin + shift:end + shift], borderMode=cv2.BORDER_REPLICATE)
+                          dst=picture[begin - shift:end - shift], borderMode=cv2.BORDER_REPLICATE)
 
-    def _paint(self, picture, texture, texels_per_m, across, distances, height_m):
-        """Draw an upright surface: its texels, and nothing above or below.
+    def _paint(self, picture, texture, texels_per_m, across, distances, height_m, view):
+        """Draw an upright surface within the limits of its texture.
 
         :param across: column of the texture for each column of the picture
-        :param distances: z-depth of each column [m], inf where there is nothing
+        :param distances: z-depth of each column [m], inf without a surface
         """
         top_m = height_m - self.height_m
-        first = self._first_row(top_m, np.minimum(distances, _FAR_M))
-        last = int(np.clip(CENTRE_Y_PX + FOCAL_PX * self.height_m / distances.min() + 2.0,
-                           0, HEIGHT))
+        first = self._first_row(top_m, np.minimum(distances, _FAR_M), view)
+        foot = FOCAL_PX * self.height_m / distances.min()
+        last = int(np.clip(CENTRE_Y_PX + view.shift + foot + 2.0, 0, HEIGHT))
         if last <= first:
             return
-        # A texel outside the texture leaves the picture as it is: that cuts off the edges.
+        # Texels outside the texture leave the picture unchanged, which clips the surface.
         across = np.where(np.isfinite(distances), across, -10.0).astype(np.float32)
         reach = (np.minimum(distances, _FAR_M) * texels_per_m).astype(np.float32)
-        down = self._down32[first:last] * reach
+        down = self._down32[self._rows(view)][first:last] * reach
         down += np.float32(top_m * texels_per_m)
         cv2.remap(texture, np.broadcast_to(across, down.shape).copy(), down, cv2.INTER_LINEAR,
                   dst=picture[first:last], borderMode=cv2.BORDER_TRANSPARENT)
 
-    def _paint_cylinder(self, picture, cylinder):
-        """Draw the side of a cylinder, and its top where the camera looks down on it."""
+    def _paint_cylinder(self, picture, cylinder, view):
+        """Draw the side of a cylinder, and its top if the camera is above it."""
         texture = self._cylinder_textures.get(cylinder.colour)
         if texture is None:
             texture = textures.cylinder_texture(cylinder.colour)
@@ -243,17 +259,17 @@ class Camera:
         rows, columns = texture.shape[:2]
         self._paint(picture, texture, (rows - 1) / cylinder.height_m,
                     np.clip(cylinder.lit, 0.0, 1.0) * (columns - 1.1), cylinder.near_m,
-                    cylinder.height_m)
+                    cylinder.height_m, view)
         top_m = cylinder.height_m - self.height_m
         if top_m < 0.0:
-            first = self._first_row(top_m, cylinder.far_m)
-            edge = -top_m / self._down[first:, None]
+            first = self._first_row(top_m, cylinder.far_m, view)
+            edge = -top_m / self._down[self._rows(view)][first:, None]
             is_top = (edge > cylinder.near_m) & (edge <= cylinder.far_m)
             picture[first:][is_top] = texture[rows // 2, -1] // 4 * 3 + 56
 
 
 class _Looks:
-    """The textures of a camera's plan, made when the first picture is wanted.
+    """The textures of a camera's plan, created with the first requested picture.
 
     The floor is cut into bands of rows, each with a texture for its distance; the arrays named
     ``band_*`` have one row for each picture row that can show floor.
@@ -288,5 +304,5 @@ class _Looks:
 
 
 def _millimetres(metres):
-    """Return metres as uint16 millimetres, limited to the largest."""
+    """Return metres as uint16 millimetres, clipped to the maximum."""
     return np.rint(np.minimum(metres * 1000.0, _NOTHING_MM)).astype(np.uint16)

@@ -5,7 +5,7 @@ import numpy as np
 
 from mhri.sim.lens import CENTRE_X_PX, CENTRE_Y_PX, FOCAL_PX, HEIGHT, WIDTH
 
-#: A point as pcl::PointXYZRGB lies in memory: metres, and 0x00rrggbb in four bytes.
+#: The memory layout of a pcl::PointXYZRGB: metres, and 0x00rrggbb in four bytes.
 LAYOUT = np.dtype({'names': ['x', 'y', 'z', 'rgb'], 'formats': ['<f4', '<f4', '<f4', '<u4'],
                    'offsets': [0, 4, 8, 16], 'itemsize': 32})
 _RIGHT = ((np.arange(WIDTH) - CENTRE_X_PX) / FOCAL_PX).astype(np.float32)
@@ -13,7 +13,7 @@ _DOWN = ((np.arange(HEIGHT) - CENTRE_Y_PX) / FOCAL_PX).astype(np.float32)[:, Non
 
 
 def cloud_of(depth_mm, rgb):
-    """Return the points of a picture, (480, 640) of :data:`LAYOUT`, NaN where there is no depth.
+    """Return the points of a picture, (480, 640) of :data:`LAYOUT`, NaN without depth.
 
     x is to the right, y down, z ahead (REP-103, optical frames).
 

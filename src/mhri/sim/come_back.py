@@ -1,12 +1,12 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What is left of a program that is dead for a while: it waits, and is then that program again."""
+"""The placeholder of a crashed program: waits, then executes that program again."""
 import os
 import sys
 import time
 
 
 def main():
-    """Wait for the seconds of the first argument, then run the rest of them, a command."""
+    """Wait for as many seconds as the first argument, then execute the others as a command."""
     time.sleep(float(sys.argv[1]))
     os.execv(sys.argv[2], sys.argv[2:])

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A link that is slow or loses some of what it is given."""
+"""A link that delays or loses items."""
 import collections
 from typing import Callable, Deque, Generic, List, Tuple, TypeVar
 
@@ -8,7 +8,7 @@ Item = TypeVar('Item')
 
 
 class DelayLine(Generic[Item]):
-    """Keeps items back for a while, in their order, or loses them; not thread-safe.
+    """Delays items in order, or drops them; not thread-safe.
 
     :param chance: function that returns a number from 0 up to but not including 1
     """
@@ -18,14 +18,13 @@ class DelayLine(Generic[Item]):
         self._kept: Deque[Tuple[float, Item]] = collections.deque()
 
     def put(self, item: Item, now: float, delay_s: float, loss: float) -> bool:
-        """Give it an item at a time [s]; return False if it is lost.
+        """Add an item at a time [s]; return False if it is lost.
 
         :param loss: the share that is lost, 0 to 1
         """
         if loss and self._chance() < loss:
             return False
-        # As in TCP nothing overtakes: what is sent after a delay has ended waits for what was
-        # sent before.
+        # The order is kept, as in TCP: items sent after the end of a delay wait for earlier ones.
         due = max(now + delay_s, self._kept[-1][0] if self._kept else now)
         self._kept.append((due, item))
         return True
@@ -38,5 +37,5 @@ class DelayLine(Generic[Item]):
         return due
 
     def __len__(self) -> int:
-        """Return how many items are under way."""
+        """Return the number of items in transit."""
         return len(self._kept)

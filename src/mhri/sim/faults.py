@@ -1,21 +1,23 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The faults that a simulated robot can have: a table, and which of them it has now."""
+"""The faults of simulated robots: a table, and the active ones of a robot."""
 from dataclasses import dataclass
 import math
 from typing import Dict, List, NamedTuple, Optional, Tuple
 
-# What a link that is down for longer teaches can be had by asking again [s].
-MOST_S = 3600.0
+from mhri.sim.body import Body
+
+# Maximum duration of a fault; a request can be repeated [s].
+MAX_S = 3600.0
 ALL = 'all'
 
 
 @dataclass(frozen=True)
 class Fault:
-    """A row of the table: ``label`` is what an operator reads.
+    """A row of the table; ``label`` is its name on the screen.
 
-    Its value is from ``low`` to ``high`` in ``unit``; a fault with ``unit`` '' has none.
-    ``timed`` ones end by time alone: nobody could ask them to.
+    Its value is from ``low`` to ``high`` in ``unit``; a fault with ``unit`` '' has no value. A
+    ``timed`` fault only ends by time, since the program cannot receive requests.
     """
 
     key: str
@@ -49,13 +51,13 @@ ROWS = {fault.key: fault for fault in FAULTS}
 
 
 class FaultRefused(ValueError):
-    """A fault that cannot be had; the text names what is wrong and what would be right."""
+    """A refused fault; the text names the problem and the valid values."""
 
 
 def fault_named(key: str) -> Fault:
     """Return a row of the table.
 
-    :raises FaultRefused: there is none of this name
+    :raises FaultRefused: unknown name
     """
     if key not in ROWS:
         raise FaultRefused('there is no fault {!r}; there are {}'.format(
@@ -64,7 +66,7 @@ def fault_named(key: str) -> Fault:
 
 
 def checked_value(fault: Fault, value: float) -> float:
-    """Return the value that a fault will have; NaN stands for its default.
+    """Return the value of a requested fault; NaN selects its default.
 
     :raises FaultRefused: it is out of the fault's range
     """
@@ -77,13 +79,13 @@ def checked_value(fault: Fault, value: float) -> float:
 
 
 def checked_duration(fault: Fault, duration_s: float) -> float:
-    """Return how long a fault will last [s], infinity for "until asked to end".
+    """Return the duration of a requested fault [s]; infinite: until ended by request.
 
-    :raises FaultRefused: it is no such time, or the fault needs one
+    :raises FaultRefused: it is invalid, or missing for a fault that requires one
     """
-    if not duration_s <= MOST_S:
+    if not duration_s <= MAX_S:
         raise FaultRefused('{}: expected a duration from 0 to {:g} s, got {:g}'.format(
-            fault.key, MOST_S, duration_s))
+            fault.key, MAX_S, duration_s))
     if fault.timed and duration_s == 0.0:
         raise FaultRefused('{}: give a duration: nobody can ask a dead program to come '
                            'back'.format(fault.key))
@@ -91,33 +93,33 @@ def checked_duration(fault: Fault, duration_s: float) -> float:
 
 
 class Having(NamedTuple):
-    """A fault that a robot has: its value, and until when [s of the caller's clock]."""
+    """An active fault: its value, and its end [s of the caller's clock]."""
 
     value: float
     until: float
 
 
 class FaultBook:
-    """The faults that one robot has now; any thread may ask, one at a time may change it.
+    """The active faults of one robot; any thread may read, one at a time may write.
 
-    Times are seconds of a clock that never goes back.
+    Times are seconds of a monotonic clock.
     """
 
     def __init__(self) -> None:
         self._has: Dict[str, Having] = {}
 
     def begin(self, key: str, value: float, duration_s: float, now: float) -> None:
-        """Begin a fault, or replace it: see ``SetFault.srv``.
+        """Start a fault, or replace it: see ``SetFault.srv``.
 
-        :raises FaultRefused: an unknown name, or a value or duration that cannot be
+        :raises FaultRefused: an unknown name, or an invalid value or duration
         """
         fault = fault_named(key)
         has = Having(checked_value(fault, value), now + checked_duration(fault, duration_s))
-        # Put in place whole: others read without a lock.
+        # Replaced atomically: others read without a lock.
         self._has = {**self._has, key: has}
 
     def end(self, key: str) -> None:
-        """End a fault, or ``all``; one that the robot does not have is no mistake.
+        """End a fault, or ``all``; ending an inactive one is not an error.
 
         :raises FaultRefused: an unknown name
         """
@@ -126,26 +128,37 @@ class FaultBook:
         self._has = {other: has for other, has in self._has.items() if ALL != key != other}
 
     def value(self, key: str, now: float) -> Optional[float]:
-        """Return the value of a fault that the robot has now; None if it does not have it."""
+        """Return the value of an active fault, else None."""
         has = self._has.get(key)
         return has.value if has is not None and now < has.until else None
 
     def has(self, key: str, now: float) -> bool:
-        """Tell whether the robot has a fault now."""
+        """Return whether a fault is active."""
         return self.value(key, now) is not None
 
+    def link(self, now: float) -> Tuple[float, float]:
+        """Return delay [s] and share of loss, 0 to 1, of the link, each way."""
+        return self.value('delay', now) or 0.0, (self.value('loss', now) or 0.0) / 100.0
+
+    def weaken(self, body: Body, now: float) -> None:
+        """Apply the faults of motors and floor to a body."""
+        slow = self.value('wheel_slow', now)
+        body.left_share = 0.0 if self.has('motor_stuck', now) else \
+            1.0 if slow is None else slow / 100.0
+        body.slip = math.radians(self.value('drift', now) or 0.0)
+
     def phrases(self, now: float) -> Tuple[str, ...]:
-        """Return what fails now, e.g. "delay each way 0.4 s"; cheap while nothing does."""
+        """Return the active faults, e.g. "delay each way 0.4 s"; cheap without any."""
         return tuple(ROWS[key].words(has.value) for key, has in self._has.items()
                      if now < has.until)
 
     def words(self, now: float) -> List[str]:
-        """Return what fails now, a phrase each, e.g. "delay each way 0.4 s, 7 s left"."""
+        """Return the active faults, a phrase each, e.g. "delay each way 0.4 s, 7 s left"."""
         return ['{}{}'.format(ROWS[key].words(has.value), '' if math.isinf(has.until) else
                               ', {:.0f} s left'.format(math.ceil(has.until - now)))
                 for key, has in self._has.items() if now < has.until]
 
 
 def failing_in(words: str) -> Tuple[str, ...]:
-    """Return the keys of the faults that a robot's answer names, e.g. "bot1: laser silent"."""
+    """Return the keys of the faults named in a robot's answer, e.g. "bot1: laser silent"."""
     return tuple(fault.key for fault in FAULTS if fault.label in words)

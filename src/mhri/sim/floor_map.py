@@ -1,20 +1,20 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The floor plan as a map of cells, as if a robot had made it."""
+"""The floor plan as a grid map, as if recorded by a robot."""
 import numpy as np
 
-from mhri.base.mocap import Pose
+from mhri.base.geometry import Pose
 from mhri.map.grid import FREE, Grid, OCCUPIED
 
 RESOLUTION_M = 0.05
-# Walls on the decimetres lie in the middle of a cell.
+# Walls at multiples of 0.1 m are at the centre of a cell.
 MARGIN_M = 0.225
 
 
 def grid_of_plan(plan):
     """Return the :class:`Grid` of a :class:`mhri.sim.plan.Plan`, in the plan's own frame.
 
-    Everything within the building's outline counts as known, but for what is to be searched for.
+    All cells are known; objects to be searched for are omitted.
     """
     corners = plan.walls.reshape(-1, 2)
     left = corners.min(axis=0) - MARGIN_M
@@ -31,6 +31,6 @@ def grid_of_plan(plan):
 
 
 def _fill(cells, places):
-    """Take the cells at places (n, 2), which count from the lower left corner [m]."""
+    """Mark the cells at positions (n, 2) from the lower left corner [m]."""
     found = np.floor(places / RESOLUTION_M).astype(int)
     cells[found[:, 1], found[:, 0]] = OCCUPIED

@@ -16,7 +16,7 @@ Colour = Tuple[int, int, int]
 class Landmark:
     """A coloured cylinder: centre, radius and height [m], colour (red, green, blue) 0 to 255.
 
-    ``on_map`` is false for what is to be searched for.
+    ``on_map`` is false for objects to be searched for.
     """
 
     name: str
@@ -32,7 +32,8 @@ class Landmark:
 class Plan:
     """Walls as an array (n, 4) of x1, y1, x2, y2 [m]; landmarks; start poses (x, y, yaw).
 
-    Walls are thin and share one height [m] and colour; the floor has a colour, too.
+    Walls are thin and share one height [m] and colour; the floor has a colour, too. ``gas`` is the
+    place of a leak of gas [m], () without one.
     """
 
     name: str
@@ -42,6 +43,7 @@ class Plan:
     floor_colour: Colour
     landmarks: Tuple[Landmark, ...]
     starts: Tuple[Tuple[float, float, float], ...]
+    gas: Tuple[float, ...] = ()
 
     def discs(self, map_only=False):
         """Return the landmarks as an array (n, 3) of x, y, radius [m].
@@ -53,16 +55,16 @@ class Plan:
 
     def distance(self, x, y):
         """Return the distance to the nearest wall or landmark [m], < 0 inside a landmark."""
-        start, along = self.walls[:, :2], self.walls[:, 2:] - self.walls[:, :2]
-        to_point = np.array((x, y)) - start
-        length2 = np.maximum((along ** 2).sum(axis=1), 1e-12)
-        share = np.clip((to_point * along).sum(axis=1) / length2, 0.0, 1.0)
-        gap = to_point - share[:, None] * along
-        return min(math.sqrt((gap ** 2).sum(axis=1).min()), disc_distance(self.discs(), x, y))
+        x1, y1, x2, y2 = self.walls.T
+        ex, ey, px, py = x2 - x1, y2 - y1, x - x1, y - y1
+        share = (px * ex + py * ey) / np.maximum(ex * ex + ey * ey, 1e-12)
+        share = np.minimum(np.maximum(share, 0.0), 1.0)
+        gap2 = (px - share * ex) ** 2 + (py - share * ey) ** 2
+        return min(math.sqrt(gap2.min()), disc_distance(self.discs(), x, y))
 
 
 def disc_distance(discs, x, y):
-    """Return how far a point is from the nearest disc [m], < 0 inside one, inf without discs.
+    """Return the distance to the nearest disc [m], < 0 inside one, inf without discs.
 
     :param discs: array (n, 3) of x, y, radius [m]
     """
@@ -72,9 +74,9 @@ def disc_distance(discs, x, y):
 
 
 def read_colour(section, key):
-    """Return the (red, green, blue) of a key, each a whole number from 0 to 255.
+    """Return the (red, green, blue) of a key, each an integer from 0 to 255.
 
-    :raises ConfigError: it is anything else
+    :raises ConfigError: it is not such a colour
     """
     row = section.take(key)
     if not (isinstance(row, list) and len(row) == 3 and all(
@@ -84,7 +86,7 @@ def read_colour(section, key):
 
 
 def _rows(section, key, value):
-    """Return a value that must be a list with at least one item."""
+    """Return a value, which has to be a list with at least one item."""
     if not isinstance(value, list) or not value:
         raise section.error(key, 'expected a list, got {!r}'.format(value))
     return value
@@ -124,7 +126,7 @@ def _landmark(row):
 def parse_plan(text, origin):
     """Return the :class:`Plan` of a YAML text.
 
-    :raises ConfigError: names the file and the wrong key
+    :raises ConfigError: the text is invalid; the error names the file and the key
     """
     section = parse_yaml(text, origin)
     plan = Plan(
@@ -134,6 +136,7 @@ def parse_plan(text, origin):
         floor_colour=read_colour(section, 'floor_colour'),
         landmarks=tuple(_landmark(row) for row in section.sections('landmarks')),
         starts=tuple(_numbers(section, 'starts', row, 3)
-                     for row in _rows(section, 'starts', section.take('starts'))))
+                     for row in _rows(section, 'starts', section.take('starts'))),
+        gas=_numbers(section, 'gas', section.take('gas'), 2) if 'gas' in section else ())
     section.close()
     return plan

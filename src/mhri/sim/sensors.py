@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a simulated robot senses: inertial unit and laser scan."""
+"""The sensors of a simulated robot: inertial unit and laser scanner."""
 import math
 
 import numpy as np
@@ -11,8 +11,8 @@ GRAVITY_MPS2 = 9.80665
 class ImuSensor:
     """A MEMS inertial unit: white noise and a constant bias on every axis.
 
-    ``yaw`` is the integral of the measured yaw rate, so it drifts, as the orientation of a real
-    unit without a compass does. Noise is the standard deviation of one sample at 100 Hz.
+    ``yaw`` is the integral of the measured yaw rate, so it drifts like the orientation of a real
+    unit without a compass. Noise is the standard deviation of one sample at 100 Hz.
 
     :param random: :class:`random.Random`
     """
@@ -41,18 +41,18 @@ class ImuSensor:
 
 
 class Laser:
-    """A planar scanner in the robot's middle: rays counter-clockwise from straight ahead.
+    """A planar scanner at the robot's centre: rays counter-clockwise from straight ahead.
 
-    A ray along a wall misses it; one that starts inside a disc hits it at once.
+    A ray along a wall misses it; a ray from inside a disc hits it at once.
 
     :param walls: array (n, 4) of x1, y1, x2, y2 [m]
     :param random: :class:`numpy.random.Generator`
-    :param nothing: what its driver sends where nothing is within its range; if that is not what
-        REP 117 says, it sends the same where something is too near
+    :param nothing: value of its driver without an obstacle within range; if not that of REP 117,
+        also for obstacles that are too near
     """
 
     NOISE_M = 0.01
-    # So that no ray slips out between two walls that share a corner.
+    # Prevents rays from passing between two walls that share a corner.
     _OVERLAP = 1e-9
 
     def __init__(self, walls, range_min_m, range_max_m, random, rays=360, nothing=math.inf):
@@ -93,7 +93,7 @@ class Laser:
         return nearest
 
     def scan(self, x, y, yaw, discs):
-        """Return what the scanner reports: with noise."""
+        """Return the measured distances, with noise."""
         ranges = self.distances(x, y, yaw, discs)
         ranges = ranges + self._random.normal(0.0, self.NOISE_M, ranges.shape)
         far, near = ranges > self.range_max_m, ranges < self.range_min_m

@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the surfaces of the simulated building look like: small pictures, made once.
+"""The textures of the simulated building: small pictures, computed once.
 
-All are uint8 (h, w, 3) in the order red, green, blue. Light and blur for a distance are painted in,
-so that drawing a frame only looks texels up.
+All are uint8 (h, w, 3) in the order red, green, blue. They include light and blur for a distance,
+so that drawing a frame only looks up texels.
 """
 import math
 
@@ -31,13 +31,13 @@ def light(distance_m):
 
 
 def level_of(distance_m):
-    """Return the level of a wall's texture for distances [m], whole numbers as an array."""
+    """Return the level of a wall's texture for distances [m], an integer array."""
     steps = np.log(np.maximum(distance_m, _NEAREST_LEVEL_M) / _NEAREST_LEVEL_M)
     return np.minimum(np.rint(steps / math.log(_LEVEL_RATIO)), WALL_LEVELS - 1)
 
 
 def _blurred(picture, sigma):
-    """Return a picture blurred; a repeating one stays seamless from left to right."""
+    """Return a blurred picture; a periodic one stays seamless from left to right."""
     if sigma < 0.3:
         return picture
     pad = int(3.0 * sigma) + 1
@@ -53,7 +53,7 @@ def _wall_tile(height_m, colour, texels_per_m, rows):
     course = np.floor(up / _BLOCK_M[1])
     shifted = (along + 0.5 * _BLOCK_M[0] * (course % 2)) % WALL_PERIOD_M
     block = np.floor(shifted / _BLOCK_M[0])
-    # Each block a little lighter or darker than its neighbours, the same in every period.
+    # Vary the brightness of the blocks a little, equally in every period.
     tone = 0.93 + 0.07 * np.modf(np.abs(np.sin(course * 12.9898 + block * 78.233)) * 43.7)[0]
     joint = (up % _BLOCK_M[1] < 0.012) | (shifted % _BLOCK_M[0] < 0.012)
     tile = np.where(joint, 0.78, tone)[..., None] * np.array(colour, float)
@@ -65,19 +65,18 @@ def _wall_tile(height_m, colour, texels_per_m, rows):
 def wall_texture(height_m, colour):
     """Return (texture, texels per metre upwards, width of a tile) of a wall.
 
-    The tiles stand side by side, :data:`WALL_LEVELS` distances for each of :data:`WALL_SHADES`
-    directions of the wall; each is one :data:`WALL_PERIOD_M` wide, plus one column of the next.
+    The tiles are side by side, :data:`WALL_LEVELS` distances for each of :data:`WALL_SHADES`
+    directions of the wall; each is :data:`WALL_PERIOD_M` wide, plus one column of the next.
     """
     rows = int(round(min(_WALL_TEXELS_HIGH, height_m * _WALL_TEXELS_PER_M))) + 1
     texels_per_m = (rows - 1) / height_m
     tile = _wall_tile(height_m, colour, texels_per_m, rows)
-    tiles = []
-    for shade in np.linspace(0.86, 1.0, WALL_SHADES):
-        for level in range(WALL_LEVELS):
-            distance = _NEAREST_LEVEL_M * _LEVEL_RATIO ** level
-            soft = _blurred(tile, 0.45 * distance * texels_per_m / 554.0)
-            tiles.append(np.pad(soft, ((0, 0), (0, 1), (0, 0)), 'wrap') * shade * light(distance))
-    # One column more, since drawing never reaches the last of a texture.
+    soft = []
+    for distance in _NEAREST_LEVEL_M * _LEVEL_RATIO ** np.arange(WALL_LEVELS):
+        blurred = _blurred(tile, 0.45 * distance * texels_per_m / 554.0)
+        soft.append(np.pad(blurred, ((0, 0), (0, 1), (0, 0)), 'wrap') * light(distance))
+    tiles = [shade * one for shade in np.linspace(0.86, 1.0, WALL_SHADES) for one in soft]
+    # One additional column, since drawing never uses the last column of a texture.
     tiles.append(tiles[-1][:, -1:])
     return np.hstack(tiles).astype(np.uint8), texels_per_m, tile.shape[1]
 
@@ -85,9 +84,9 @@ def wall_texture(height_m, colour):
 def floor_texture(colour, distance_m, blur_m):
     """Return (texture, texels per metre) of the floor up to a distance.
 
-    A chequerboard of squares half a period wide, a period's corner in the middle, blurred over
-    ``blur_m`` and as bright as at that distance; wide enough for every heading and place within a
-    period.
+    A chequerboard with squares of half a period, centred on the corner of a period, with the blur
+    ``blur_m`` and the brightness of that distance; large enough for every heading and position
+    within a period.
     """
     texels_per_m = min(180.0, 300.0 / (distance_m + 1.0))
     half = int((1.17 * distance_m + FLOOR_PERIOD_M) * texels_per_m) + 2
@@ -95,17 +94,18 @@ def floor_texture(colour, distance_m, blur_m):
     checker = np.where((place[:, None] < 0.5) ^ (place[None] < 0.5), 1.0, 0.84)
     joint = (place % 0.5) * FLOOR_PERIOD_M < 0.008
     checker[joint[:, None] | joint[None]] = 0.74
-    # At half a period the pattern is gone.
+    # Limited to half a period, where the pattern has vanished.
     sigma = min(max(blur_m, 0.4 / texels_per_m) / FLOOR_PERIOD_M, 0.5) * _TILE
-    pad = int(3.0 * sigma) + 1
-    soft = cv2.GaussianBlur(np.pad(checker, pad, 'wrap'), (0, 0), sigma)[pad:-pad, pad:-pad]
+    # In the frequency domain, since a periodic pattern then has no borders.
+    fade = np.exp(-2.0 * (math.pi * sigma * np.fft.fftfreq(_TILE)) ** 2)
+    soft = np.fft.ifft2(np.fft.fft2(checker) * fade[:, None] * fade).real
+    tile = (soft[..., None] * light(distance_m) * np.array(colour, float)).astype(np.uint8)
     texel = (np.arange(-half, half) / texels_per_m / FLOOR_PERIOD_M * _TILE).astype(int) % _TILE
-    bright = soft[texel[:, None], texel[None]][..., None] * light(distance_m)
-    return (bright * np.array(colour, float)).astype(np.uint8), texels_per_m
+    return tile[texel[:, None], texel[None]], texels_per_m
 
 
 def cylinder_texture(colour):
-    """Return the side of a cylinder: unlit on the left to lit on the right, top to foot."""
+    """Return the side of a cylinder: dark on the left to lit on the right, top to bottom."""
     lit = np.linspace(0.0, 1.0, _SHADE_STEPS)[None, :, None]
     side = (0.42 + 0.58 * lit) * np.array(colour, float) + 26.0 * lit ** 6
     side = np.repeat(side, _CYLINDER_ROWS, axis=0)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The timetable of a simulated robot: steps at absolute times, and what is due at each."""
+"""The schedule of a simulated robot: steps at absolute times, and their due actions."""
 import time
 
 
@@ -32,7 +32,7 @@ class Ticks:
 
 
 class Due:
-    """Tells at which ticks something is due that comes at every n-th.
+    """Determines the ticks at which an action of every n-th tick is due.
 
     If ticks are skipped, it is due at the next one.
     """
@@ -42,7 +42,7 @@ class Due:
         self._next = 0
 
     def at(self, number):
-        """Tell whether it is due at the tick of this number; numbers only ever grow."""
+        """Return whether the action is due at a tick; numbers have to increase."""
         if number < self._next:
             return False
         self._next = number - number % self._every + self._every

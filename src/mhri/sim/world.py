@@ -2,12 +2,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The bodies of all simulated robots of one building, shared without ROS.
 
-A file in shared memory with one slot per robot: lasers, bumpers and cameras must not need a topic
-that no real robot has. A killed robot stays where it was, as a body, until a robot of its name
-takes its slot or nobody has written to the slot for :data:`GHOST_S`.
+A file in shared memory with one slot per robot: lasers, bumpers and cameras must not require a
+topic that no real robot has. The body of a killed robot remains until a robot of its name takes its
+slot, or until nothing has been written to the slot for :data:`GHOST_S`.
 
-Nobody waits for anybody to read or to write a place: it is written at once with a sum over it, and
-whoever reads half of it looks again.
+Slots are read and written without a lock: each is written in one piece with a checksum, and a
+reader retries after a torn read.
 """
 import errno
 import fcntl
@@ -34,15 +34,15 @@ _POSE = struct.Struct('<4d')
 _SUM = struct.Struct('<I')
 _SIZE = SLOTS * _SLOT.itemsize
 _POSE_FROM = _SLOT.fields['x'][1]
-# So often a place is read that is being written.
+# Number of attempts to read a slot that is being written.
 _TRIES = 20
 _NOWHERE = (math.nan, math.nan, 0.0)
-# The errors of opening a symbolic link, somebody else's file, a folder, and a socket.
+# Errors of opening a symbolic link, the file of another user, a folder, and a socket.
 _NOT_OURS = frozenset((errno.ELOOP, errno.EACCES, errno.EPERM, errno.EISDIR, errno.ENXIO))
 
 
 class WorldRefused(OSError):
-    """The shared file is not this user's own; the text says what to do."""
+    """The shared file is not this user's own; the text names the remedy."""
 
 
 class WorldFull(Exception):
@@ -65,7 +65,7 @@ def _file_problem(status):
 
 
 def world_path(key, folder=None):
-    """Return the file of a world; robots with the same key (and file layout) meet."""
+    """Return the file of a world, shared by robots with the same key (and file layout)."""
     if folder is None:
         folder = '/dev/shm' if os.path.isdir('/dev/shm') else tempfile.gettempdir()
     digest = hashlib.sha256('{} {} {}'.format(key, SLOTS, _SLOT).encode('utf-8')).hexdigest()[:16]
@@ -73,14 +73,14 @@ def world_path(key, folder=None):
 
 
 class World:
-    """One robot's place in the shared file.
+    """One robot's slot in the shared file.
 
-    Of two robots with one name the one that publishes has the place; a robot that slept so long
-    that it lost its place takes another one.
+    Of two robots with one name, the slot belongs to the one that published last. A robot that
+    lost its slot takes it, or a free one, when it publishes again.
 
     :param path: from :func:`world_path`
-    :param body_type: :class:`mhri.sim.body.BodyType` that the others see
-    :param clock: seconds since some time common to all processes (``time.monotonic`` on Linux)
+    :param body_type: :class:`mhri.sim.body.BodyType` as seen by the others
+    :param clock: seconds of a clock shared by all processes (``time.monotonic`` on Linux)
     :raises WorldFull: no slot is left
     :raises WorldRefused: the file is not this user's own
     :raises OSError: the file is unusable
@@ -103,11 +103,11 @@ class World:
             fcntl.flock(self._file, fcntl.LOCK_UN)
 
     def _open_locked(self):
-        """Return the open file, locked; one that the last robot just removed does not count.
+        """Return the open file, locked; retry if the last robot has just removed it.
 
-        The folder is everybody's: a file in it may be a trap.
+        The folder is world-writable: a file in it may be a trap.
 
-        :raises WorldRefused: it is
+        :raises WorldRefused: it is not this user's own file
         """
         while True:
             try:
@@ -144,7 +144,7 @@ class World:
         self._slot = slot
         self._owner_at = slot * _SLOT.itemsize + _SLOT.fields['owner'][1]
         self._pose_at = slot * _SLOT.itemsize + _POSE_FROM
-        # Nobody's until all of it is there, and out of sight until it says where it is.
+        # Unowned until it is complete, and invisible until it has a pose.
         slots['owner'][slot] = 0
         self._write(*_NOWHERE)
         for key, value in (('name', self._name), ('radius', body.radius_m),
@@ -153,7 +153,7 @@ class World:
         slots['owner'][slot] = self._owner
 
     def _write(self, x, y, yaw):
-        # In one piece: pack_into() would fill the place with zeros first.
+        # In one piece: pack_into() would fill the slot with zeros first.
         pose = _POSE.pack(x, y, yaw, self._clock())
         self._map[self._pose_at:self._pose_at + _POSE.size + _SUM.size] = pose + _SUM.pack(
             zlib.crc32(pose))
@@ -162,9 +162,9 @@ class World:
         return _OWNER.unpack_from(self._map, self._owner_at)[0] == self._owner
 
     def publish(self, x, y, yaw):
-        """Say where this robot is [m, m, rad].
+        """Write the pose of this robot [m, m, rad].
 
-        :raises WorldFull: its place was given away, and no other is left
+        :raises WorldFull: its slot was given away, and no other is left
         """
         if not self._owned():
             fcntl.flock(self._file, fcntl.LOCK_EX)
@@ -175,13 +175,13 @@ class World:
         self._write(x, y, yaw)
 
     def _there(self):
-        """Return which slots hold a robot, or the body of one that was killed."""
-        # Another process may write while this one looks: then its stamp is later than our time.
+        """Return a mask of the slots with a robot, or with the body of a killed one."""
+        # Another process may write meanwhile: then its stamp is later than our time.
         age = np.abs(self._clock() - self._slots['stamp'])
         return (self._slots['owner'] != 0) & (age <= GHOST_S)
 
     def others(self):
-        """Return what the other robots look like: a structured array, a copy.
+        """Return the appearance of the other robots: a structured array, a copy.
 
         Its fields: ``x, y`` [m], ``yaw`` [rad], ``radius, height`` [m], ``colour`` (3 times 0 to
         255), ``name``.
@@ -195,11 +195,11 @@ class World:
         return np.column_stack((rows['x'], rows['y'], rows['radius']))
 
     def leave(self):
-        """Remove this robot, unless its place is another's by now; the last removes the file."""
+        """Remove this robot, unless its slot was given away; the last one removes the file."""
         fcntl.flock(self._file, fcntl.LOCK_EX)
         try:
             if self._owned():
-                # Its place stays for whoever looks just now: nobody may see it jump.
+                # The pose stays, so that concurrent readers do not see a jump.
                 _OWNER.pack_into(self._map, self._owner_at, 0)
             if not self._there().any() and os.fstat(self._file).st_nlink:
                 os.unlink(self._path)
@@ -208,9 +208,9 @@ class World:
 
 
 def look_in(path, clock):
-    """Return everybody in a world, as :meth:`World.others` does, without a place in it.
+    """Return all robots of a world, like :meth:`World.others`, without taking a slot.
 
-    Nobody if there is no such world now.
+    The array is empty if the world does not exist.
 
     :raises WorldRefused: the shared file is not this user's own
     """
@@ -229,13 +229,13 @@ def look_in(path, clock):
 
 
 def _whole_rows(read, clock):
-    """Return the slots of those who have said where they are; none that is read in part.
+    """Return the slots with a valid pose, without torn ones.
 
     :param read: function that returns a copy of all slots
     """
     for _ in range(_TRIES):
         rows = read()
-        # Another process may write while this one looks: then its stamp is later than our time.
+        # Another process may write meanwhile: then its stamp is later than our time.
         rows = rows[rows['owner'] != 0]
         whole = np.array([_is_whole(row.tobytes()) for row in rows], bool)
         if whole.all():

@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A goal that a robot's own navigation (move_base) drives to: begun, watched and cancelled here.
+"""Starts, monitors and cancels goals of a robot's own navigation (move_base).
 
-That navigation speaks to the robot itself, so nothing of it passes the gates: whatever ends a task
-cancels the goal there, and the robot gets zeros through the gates as after any task.
+That navigation commands the robot directly, bypassing the mux: whatever ends a task cancels its
+goal, and the robot gets zeros from the mux as after any task.
 """
 from dataclasses import replace
 import math
@@ -11,47 +11,46 @@ from typing import Optional, Tuple
 
 import numpy as np
 
+from mhri.base.geometry import beside, Pose, within
 from mhri.base.limits import Velocity, ZERO
-from mhri.base.mocap import Pose
-from mhri.driving.gate import OPERATOR, TASK
+from mhri.driving.robot_rule import OPERATOR, TASK
 from mhri.tasks.base import (
-    beside, BLOCKED, Body, DONE, ENDS, FAILED, RUNNING, Senses, shown, Target, turn_to, WAITING,
-    way, within)
+    BLOCKED, Body, DONE, ENDS, FAILED, RUNNING, Senses, shown, Target, turn_to, WAITING, way)
 from mhri.tasks.fence import depths, is_inside
 from mhri.tasks.run import ENDED, Facts, missing_senses, READYING, RobotRun, UNDER_WAY
 
-# So much nearer to the fence than before is no error of measurement [m].
+# An approach to the fence by less than this may be noise [m].
 _NEARER_M = 0.02
 
 
 class Errand:
-    """What a robot's own navigation can be told; each call returns at once."""
+    """The interface of a robot's own navigation; each call returns at once."""
 
     def is_ready(self) -> bool:
-        """Tell whether it is heard, and hears us."""
+        """Return whether it is connected in both directions."""
         raise NotImplementedError
 
     def begin(self, by_odometry: Pose, in_frame: Optional[Pose]) -> None:
-        """Send it to a pose.
+        """Send the robot to a pose.
 
         :param by_odometry: in the frame of the robot's odometry
-        :param in_frame: the same in that of the map, None where that is not known
+        :param in_frame: the same in the frame of the map, None if unknown
         """
         raise NotImplementedError
 
     def look(self) -> Tuple[str, str]:
-        """Return (task state, sentence) of what was begun."""
+        """Return (task state, sentence) of the goal."""
         raise NotImplementedError
 
     def cancel(self) -> None:
-        """End what was begun; nothing where that has ended."""
+        """Cancel the goal, unless it has ended."""
         raise NotImplementedError
 
 
 class DelegatedRun(RobotRun):
     """The run of a goal by a robot's own navigation.
 
-    States are those of :class:`mhri.tasks.run.RobotRun` without ``joining``; nothing is to be
+    Its states are those of :class:`mhri.tasks.run.RobotRun` without ``joining``; nothing is
     published for the robot while it is under way.
     """
 
@@ -64,20 +63,20 @@ class DelegatedRun(RobotRun):
 
     @property
     def drives(self) -> bool:
-        """Whether its velocities are those of :meth:`tick`."""
+        """Whether the velocities of :meth:`tick` apply."""
         return self.phase == ENDED
 
     def end(self, state: str, text: str, now_s: float) -> None:
-        """End it, unless it has ended, here and at the robot's navigation."""
+        """End it here and at the robot's navigation, unless it has ended."""
         if self.phase != ENDED:
             self._errand.cancel()
         super().end(state, text, now_s)
 
     def tick(self, facts: Facts) -> Velocity:
-        """Let time pass: begin it, watch it, end it."""
+        """Start, monitor or end the goal."""
         if self.phase == ENDED:
             return ZERO
-        # No task reaches the gates meanwhile, so a robot obeys its operator or nobody.
+        # Meanwhile no task reaches the mux, so the robot is either driven by its operator or idle.
         obeys = OPERATOR if facts.obeys == OPERATOR else TASK
         end = self._reason(replace(facts, obeys=obeys, has_laser=False))
         if end is not None:
@@ -97,7 +96,7 @@ class DelegatedRun(RobotRun):
             return
         senses, target = facts.senses, self._target
         if not target.by_odometry and not is_inside(senses.fence, target.x_m, target.y_m):
-            self.end(FAILED, 'its goal lies outside of the fence', facts.now_s)
+            self.end(FAILED, 'its goal is outside the fence', facts.now_s)
             return
         own = senses.odometry if target.by_odometry else senses.pose
         heading = target.heading_rad
@@ -117,7 +116,7 @@ class DelegatedRun(RobotRun):
         state, text = self._errand.look()
         if state in ENDS:
             if state == DONE:
-                text += ', {:.2f} m beside the goal'.format(self.left_m)
+                text += ', {:.2f} m off'.format(self.left_m)
             self.end(state, text, facts.now_s)
         elif self._leaves(senses):
             self.end(BLOCKED, 'it is at the fence, at {}'.format(shown(senses.pose)), facts.now_s)
@@ -127,7 +126,7 @@ class DelegatedRun(RobotRun):
                 text, self.left_m)
 
     def _leaves(self, senses: Senses) -> bool:
-        """Tell whether it gets nearer to a fence that it touches, or further off outside."""
+        """Return whether the robot approaches a fence it touches, or moves further outside."""
         if not len(senses.fence):
             return False
         depth_m = float(depths(senses.fence, np.array([[senses.pose.x_m, senses.pose.y_m]]))[0])

@@ -1,27 +1,27 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The fence that no task leaves: how fast a robot may go, with the fence on its way.
+"""Limits the speed of a robot so that no task leaves the fence.
 
-As with obstacles, its speed is kept to what it can lose within the way that is left. A robot that
-stands too near to the fence, or outside of it, may drive to where it is further inside.
+As with obstacles, the robot has to be able to stop within the remaining distance. A robot too near
+to the fence, or outside, may only drive further inside.
 """
 import math
 
 import numpy as np
 
+from mhri.base.geometry import Pose
 from mhri.base.limits import Velocity
-from mhri.base.mocap import Pose
-from mhri.sensors.brake import BRAKES_MPS2, MARGIN_M, REACTION_S, stopping_speed
+from mhri.sensors.brake import BRAKES_MPS2, MARGIN_M, REACTION_S, stopping_speed, within_way
 from mhri.tasks.base import Body
 
 _STEP_M = 0.04
 
 
 def depths(fence: np.ndarray, places: np.ndarray) -> np.ndarray:
-    """Return how far inside a fence places lie [m], below 0 where they are outside.
+    """Return the depth of positions inside a fence [m]; negative outside.
 
     :param fence: its corners, an array (n, 2) [m] with n >= 3
-    :param places: an array (m, 2) in the same frame [m]
+    :param places: positions, an array (m, 2) in the same frame [m]
     """
     start, end = fence, np.roll(fence, -1, axis=0)
     along = end - start
@@ -38,38 +38,34 @@ def depths(fence: np.ndarray, places: np.ndarray) -> np.ndarray:
 
 
 def is_inside(fence: np.ndarray, x_m: float, y_m: float) -> bool:
-    """Tell whether a place lies inside; without a fence everything does."""
+    """Return whether a position is inside; True without a fence."""
     return not len(fence) or bool(depths(fence, np.array([[x_m, y_m]]))[0] > 0.0)
 
 
 def kept_inside(velocity: Velocity, pose: Pose, fence: np.ndarray, body: Body) -> Velocity:
-    """Return the velocity that a robot may have; turning on the spot is always allowed.
+    """Return the allowed velocity of a robot; turning on the spot is always allowed.
 
-    :param velocity: what is wanted
-    :param pose: where the robot is, in the frame of the fence
-    :param fence: its corners, an array (n, 2) [m]; empty: there is none
+    :param velocity: the requested velocity
+    :param pose: pose of the robot in the frame of the fence
+    :param fence: its corners, an array (n, 2) [m]; empty: no fence
     """
-    wanted, turn = velocity.linear_mps, velocity.angular_rad_s
-    if not len(fence) or wanted == 0.0:
+    if not len(fence) or velocity.speed_mps == 0.0:
         return velocity
-    # Slower with the same turn is another arc: looked at once more.
-    for _ in range(2):
-        most = stopping_speed(_way_inside(Velocity(wanted, turn), pose, fence, body), REACTION_S)
-        wanted = max(-most, min(most, wanted))
-    return Velocity(0.0 if abs(wanted) < 1e-3 else wanted, turn)
+    return within_way(velocity, lambda slower: stopping_speed(
+        _way_inside(slower, pose, fence, body), REACTION_S))
 
 
 def _way_inside(velocity: Velocity, pose: Pose, fence: np.ndarray, body: Body) -> float:
     """Return how far the robot may go along the arc of a velocity [m]; inf: it can stop inside."""
-    speed = abs(velocity.linear_mps)
+    speed = velocity.speed_mps
     if speed < 1e-6:
         return math.inf
     look_m = speed * REACTION_S + speed ** 2 / (2.0 * BRAKES_MPS2) + 2 * _STEP_M
     ways = np.arange(0.0, look_m + _STEP_M, _STEP_M)
-    # The middle of each step looks as the robot does there.
-    headings = pose.heading_rad + (ways - 0.5 * _STEP_M) * velocity.angular_rad_s / speed
-    steps = math.copysign(_STEP_M, velocity.linear_mps) * np.column_stack(
-        (np.cos(headings), np.sin(headings)))
+    # The heading at the middle of each step.
+    headings = pose.heading_rad + math.atan2(velocity.lateral_mps, velocity.linear_mps) + (
+        ways - 0.5 * _STEP_M) * velocity.angular_rad_s / speed
+    steps = _STEP_M * np.column_stack((np.cos(headings), np.sin(headings)))
     steps[0] = (pose.x_m, pose.y_m)
     inside = depths(fence, np.cumsum(steps, axis=0))
     over = inside[1:] < min(inside[0], body.radius_m + MARGIN_M)

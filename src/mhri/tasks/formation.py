@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The task formation: keep a place in a line, a column or a wedge around a leader, bends too.
+"""The task formation: keeps a slot in a line, column or wedge around a leader, also in bends.
 
-Places lie along the path that the leader has driven, and across it: not across its heading, so that
-a leader that turns on the spot swings nobody around.
+Slots are relative to the path of the leader, not to its heading, so that a leader that turns on the
+spot does not swing the formation around.
 """
 from dataclasses import dataclass, replace
 import math
@@ -11,34 +11,34 @@ from typing import List, Optional, Tuple
 
 import numpy as np
 
+from mhri.base.geometry import beside, Pose
 from mhri.base.limits import Velocity
-from mhri.base.mocap import Pose
 from mhri.tasks.base import (
-    beside, circles, Corners, Field, LOST, REQUIRED, Senses, Start, Step, Task, TaskKind, TEXT,
-    Values, WAITING, way, Where)
+    circles, Corners, Field, LOST, REQUIRED, Senses, Start, Step, Task, TaskKind, TEXT, Values,
+    WAITING, way, Where)
 from mhri.tasks.hold import ROW as HOLD
 from mhri.tasks.pilot import Pilot
 
 LINE, COLUMN, WEDGE = SHAPES = ('line', 'column', 'wedge')
-_STEP_M, _MOST_PLACES = 0.05, 4000
-# A direction of the path is that of so much of it, more for who is further to the side [m].
+_STEP_M, _MAX_PLACES = 0.05, 4000
+# Length of path that determines its direction; longer for slots further to the side [m].
 _CHORD_M, _CHORD_PER_M = 0.2, 0.5
-# It aims so far ahead of its place [m]; further off than this it drives to the place itself.
+# Look-ahead beyond its slot [m]; at a larger distance it drives to the slot itself.
 _AHEAD_M, _NEAR_M = 0.45, 0.6
-# Faster than its place by this much for each metre that it is behind, slower ahead [1/s].
+# Gain of the speed on the distance to its slot [1/s].
 _CATCH_UP = 1.0
-# How the speed of its place is smoothed [s]; slower than this it stands [m/s].
+# Smoothing of the speed of its slot [s]; below this speed it counts as stopped [m/s].
 _SMOOTH_S, _STANDS_MPS = 0.3, 0.03
-# As near as this to a place that stands is there [m]; off by more it goes there anew.
+# Tolerance at a stopped slot [m]; beyond the second one it drives there again.
 _THERE_M, _LEFT_M = 0.06, 0.12
-# Its leader may drive on: who is ahead of its place turns back after so long [s].
+# A robot ahead of its slot turns back only after this time, since its leader may drive on [s].
 _WAITS_S = 2.0
-# What was met no further off a robot than this is that robot [m].
+# Laser points nearer to a robot than this belong to it [m].
 _SEEN_WITHIN_M = 0.15
 
 
 class LeaderPath:
-    """The path that a leader has driven, made longer to the back by a straight line."""
+    """The path driven by a leader, extended straight to the back."""
 
     def __init__(self) -> None:
         self._places: List[Tuple[float, float]] = []
@@ -46,7 +46,7 @@ class LeaderPath:
         self._newest: Optional[Pose] = None
 
     def add(self, pose: Pose) -> None:
-        """Take in where the leader is; what it backs over is taken away."""
+        """Add a pose of the leader; the part that it backs over is removed."""
         if self._first is None:
             self._first = pose
             self._places.append((pose.x_m, pose.y_m))
@@ -55,11 +55,11 @@ class LeaderPath:
             self._places.pop()
         if way(pose, *self._places[-1]) > _STEP_M:
             self._places.append((pose.x_m, pose.y_m))
-            del self._places[:-_MOST_PLACES]
+            del self._places[:-_MAX_PLACES]
         self._newest = pose
 
     def at(self, behind_m: float) -> Tuple[float, float]:
-        """Return the place (x, y) [m] that lies so far behind the leader along its path."""
+        """Return the position (x, y) [m] at a distance behind the leader along its path."""
         assert self._newest is not None and self._first is not None
         here = (self._newest.x_m, self._newest.y_m)
         for place in reversed(self._places):
@@ -74,7 +74,7 @@ class LeaderPath:
         return beside(back, -behind_m, 0.0)
 
     def pose(self, behind_m: float, left_m: float) -> Pose:
-        """Return the pose so far behind the leader along its path, and so far to the left."""
+        """Return the pose at a distance behind the leader along its path, and to the left."""
         chord_m = max(_CHORD_M, _CHORD_PER_M * abs(left_m))
         begin_m = max(0.0, behind_m - 0.5 * chord_m)
         ahead, back = self.at(begin_m), self.at(begin_m + chord_m)
@@ -85,7 +85,7 @@ class LeaderPath:
 
 @dataclass(frozen=True)
 class Slot:
-    """A place in a formation: behind the leader along its path, and to its left [m]."""
+    """A slot of a formation: behind the leader along its path, and to its left [m]."""
 
     behind_m: float
     left_m: float
@@ -94,8 +94,8 @@ class Slot:
 def slot_of(shape: str, spacing_m: float, place: int) -> Slot:
     """Return the slot of a team's robot; in line and wedge the first goes left, the next right.
 
-    :param spacing_m: from middle to middle
-    :param place: from 0
+    :param spacing_m: between centres
+    :param place: index of the robot
     """
     if shape == COLUMN:
         return Slot(spacing_m * (place + 1), 0.0)
@@ -123,23 +123,23 @@ class Formation(Task):
         self._there = False
 
     def step(self, senses: Senses) -> Step:
-        """Return what keeps the slot."""
+        """Return the next step towards the slot."""
         leader = senses.others.get(self._leader)
         if leader is None:
-            return Step(state=LOST, text='nobody knows where {} is'.format(self._leader))
+            return Step(state=LOST, text='the position of {} is unknown'.format(self._leader))
         self._path.add(leader.pose)
         slot = self._path.pose(self._slot.behind_m, self._slot.left_m)
-        self._see_speed(slot, senses.now_s)
+        self._update_speed(slot, senses.now_s)
         off_m = way(senses.pose, slot.x_m, slot.y_m)
         velocity = self._moving(senses, slot, off_m) if self._speed_mps > _STANDS_MPS \
             else self._standing(senses, slot, off_m)
         if velocity is None:
-            return Step(state=WAITING, left_m=off_m, text='something is between it and its place')
+            return Step(state=WAITING, left_m=off_m, text='an obstacle is between it and its place')
         return Step(velocity, left_m=off_m, text='in formation with {}, {:.2f} m off'.format(
             self._leader, off_m))
 
-    def _see_speed(self, slot: Pose, now_s: float) -> None:
-        """Measure how fast the slot moves forward."""
+    def _update_speed(self, slot: Pose, now_s: float) -> None:
+        """Measure the forward speed of the slot."""
         if self._last is not None and now_s > self._last[0]:
             before, passed_s = self._last[1], now_s - self._last[0]
             speed = _ahead(before, slot) / passed_s
@@ -154,7 +154,7 @@ class Formation(Task):
         far = off_m > _NEAR_M and behind_m > 0.0
         aim = (slot.x_m, slot.y_m) if far else beside(
             slot, max(0.0, -behind_m) + _AHEAD_M, 0.0)
-        # In its ranks it does not go around the others: they go on. The brake looks at them, too.
+        # In formation it ignores the others, which move on; the brake still stops for them.
         seen = senses if far else replace(senses, points=_without(senses, self.pass_by))
         velocity = self._pilot.towards(seen, senses.pose, *aim, rest=False)
         if velocity is None:
@@ -172,13 +172,13 @@ class Formation(Task):
 
 
 def _ahead(pose: Pose, place: Pose, heading_rad: Optional[float] = None) -> float:
-    """Return how far a place lies ahead of a pose [m], as seen along a heading."""
+    """Return how far a position is ahead of a pose along a heading [m]."""
     heading = pose.heading_rad if heading_rad is None else heading_rad
     return (place.x_m - pose.x_m) * math.cos(heading) + (place.y_m - pose.y_m) * math.sin(heading)
 
 
 def _without(senses: Senses, names: Tuple[str, ...]) -> np.ndarray:
-    """Return what a robot has met, but for these robots, as an array (n, 2) in its frame [m]."""
+    """Return the laser points except those of some robots, an array (n, 2) in its frame [m]."""
     points, others = senses.points, [
         senses.others[name] for name in set(names) & set(senses.others)]
     for x_m, y_m, radius_m in circles(senses.pose, others):
@@ -188,7 +188,7 @@ def _without(senses: Senses, names: Tuple[str, ...]) -> np.ndarray:
 
 
 def make(values: Values, start: Start) -> Formation:
-    """Begin.
+    """Start.
 
     :raises ValueError: the leader is one of the team
     """
@@ -200,7 +200,7 @@ def make(values: Values, start: Start) -> Formation:
 
 
 def slots(values: Values, count: int, where: Where) -> Corners:
-    """Return the places around the leader as it stands now, the way it came straight behind it."""
+    """Return the slots around the present pose of the leader, assuming a straight path."""
     leader = where(values.text('leader'))
     if leader is None:
         return ()
@@ -211,9 +211,9 @@ def slots(values: Values, count: int, where: Where) -> Corners:
 
 ROW = TaskKind(
     'formation', 'Formation', 'in line, column or wedge with a leader; keeps its spacing in bends',
-    (Field('leader', '', 'name of the robot in the middle of the line or at the head', REQUIRED,
+    (Field('leader', '', 'name of the robot at the centre of the line or at the head', REQUIRED,
            kind=TEXT),
      Field('shape', '', 'line, column or wedge', WEDGE, kind=TEXT, choices=SHAPES),
-     Field('spacing', 'm', 'from middle to middle', 0.8, 0.4, 10.0),
-     Field('speed', 'm/s', 'the most it drives', 0.4, 0.02, 2.0), HOLD.fields[1]),
+     Field('spacing', 'm', 'between centres', 0.8, 0.4, 10.0),
+     Field('speed', 'm/s', 'maximum speed', 0.4, 0.02, 2.0), HOLD.fields[1]),
     make, needs_place=True, slots=slots)

@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The task hold: stand, and say if pushed."""
+"""The task hold: stays in place, and reports being pushed."""
 import math
 from typing import Optional, Tuple
 
-from mhri.base.mocap import Pose
+from mhri.base.geometry import Pose
 from mhri.tasks.base import (
     DONE, Field, RUNNING, Senses, Start, Step, Task, TaskKind, Values, way, wrapped)
 
@@ -14,7 +14,7 @@ PUSHED_M, PUSHED_RAD = 0.03, 0.09
 class Hold(Task):
     """Stands still for a while.
 
-    :param seconds: 0: until it is ended
+    :param seconds: duration, 0: until it is ended
     """
 
     def __init__(self, seconds: float) -> None:
@@ -25,10 +25,10 @@ class Hold(Task):
         self._pushed = False
 
     def step(self, senses: Senses) -> Step:
-        """Stand, and look whether that is so."""
+        """Stand still, and check the odometry."""
         if self._place is None:
             self._captured, self._begun_s = senses.captured is not None, senses.now_s
-        # Not its place on the map, which may be corrected while it stands.
+        # Not its pose on the map, which may be corrected meanwhile.
         pose = senses.captured if self._captured else senses.odometry
         self._place = self._place or pose
         pose = pose or self._place
@@ -47,10 +47,10 @@ class Hold(Task):
 
 
 def make(values: Values, start: Start) -> Hold:
-    """Begin."""
+    """Start."""
     return Hold(values.number('seconds'))
 
 
-ROW = TaskKind('hold', 'Hold', 'stands, and says if it is pushed', (
+ROW = TaskKind('hold', 'Hold', 'stays in place, reports being pushed', (
     Field('seconds', 's', 'for so long, 0 until it is ended', 0.0, 0.0, 86400.0),
-    Field('timeout', 's', 'give up after so long, 0 for never', 0.0, 0.0, 86400.0)), make)
+    Field('timeout', 's', 'timeout, 0 for none', 0.0, 0.0, 86400.0)), make)

@@ -1,8 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The task patrol: along a route, once or again and again."""
+"""The task patrol: drives along a route, once or repeatedly."""
 from typing import Optional
 
+from mhri.tasks.acts import ACT, read_acts
 from mhri.tasks.base import (
     DONE, Field, FRAME, REQUIRED, ROUTE, RUNNING, Senses, Start, Step, Task, TaskKind, Values)
 from mhri.tasks.goto import Goto, SPEED
@@ -12,9 +13,9 @@ TIMEOUT_S = HOLD.fields[1]
 
 
 class Patrol(Task):
-    """One corner after the other.
+    """Visits the corners of a route.
 
-    :param rounds: 0: until it is ended
+    :param rounds: number of rounds, 0: until it is ended
     """
 
     def __init__(self, start: Start, values: Values) -> None:
@@ -23,11 +24,12 @@ class Patrol(Task):
         self._rounds = int(values.number('rounds'))
         self._speed_mps = values.number('speed')
         self._by_odometry = values.by_odometry()
+        self._acts = read_acts(values.text('act'), len(self._route), start.accessories)
         self._passed = 0
         self._leg: Optional[Goto] = None
 
     def step(self, senses: Senses) -> Step:
-        """Return what leads to the next corner."""
+        """Return the next step towards the next corner."""
         corner = self._passed % len(self._route)
         if self._leg is None:
             self._leg = Goto(self._start, *self._route[corner], None, self._speed_mps,
@@ -40,10 +42,11 @@ class Patrol(Task):
         self._passed += 1
         over = self._rounds and self._passed == self._rounds * len(self._route)
         return Step(state=DONE if over else RUNNING, said=(words + ' reached',),
-                    text='it has been everywhere' if over else words + ' reached')
+                    acts=self._acts.get(corner, ()),
+                    text='it has completed its route' if over else words + ' reached')
 
 
-ROW = TaskKind('patrol', 'Patrol', 'along a route, once or again and again', (
+ROW = TaskKind('patrol', 'Patrol', 'along a route, once or repeatedly', (
     Field('route', 'm', 'its corners: [[x, y], ...]', REQUIRED, kind=ROUTE),
     Field('rounds', '', 'how often, 0 until it is ended', 0.0, 0.0, 10000.0, whole=True),
-    SPEED, FRAME, TIMEOUT_S), lambda values, start: Patrol(start, values), needs_place=True)
+    SPEED, FRAME, ACT, TIMEOUT_S), lambda values, start: Patrol(start, values), needs_place=True)

@@ -1,49 +1,49 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Drives a robot to a place, around a single thing in the way."""
+"""Drives a robot to a position, around single obstacles."""
 import math
 from typing import Optional
 
 import numpy as np
 
 from mhri.base.limits import Velocity
-from mhri.base.mocap import Pose
+from mhri.base.geometry import Pose
 from mhri.sensors.brake import within_reach
 from mhri.tasks.base import Body, Senses, turn_to, way, wrapped
 
-# Headings that are tried, off the straight one [rad]; how far each has to be free [m].
+# Candidate headings relative to the straight one [rad]; required free distance of each [m].
 _OFFSETS = np.radians(np.arange(-120, 121, 8, dtype=float))
 LOOK_M = 1.0
-# What is kept between the robot and what it goes around, a little more than the brake's [m].
+# Clearance to obstacles while going around them, a little more than that of the brake [m].
 CLEARANCE_M = 0.14
-# Going around the other way than a moment ago has to be worth this much [rad].
+# Minimum gain for changing the side on which it goes around [rad].
 _KEEP_SIDE_RAD = math.radians(60.0)
-_TURN_GAIN, _MOST_TURN_RAD_S = 1.2, 0.8
-# Further off the heading than this the robot turns on the spot [rad].
+_TURN_GAIN, _MAX_TURN_RAD_S = 1.2, 0.8
+# Beyond this heading error the robot turns on the spot [rad].
 _TURN_FIRST_RAD = 0.7
 _SLOWS_MPS2 = 0.25
-_LEAST_MPS = 0.04
+_MIN_MPS = 0.04
 HEADING_WITHIN_RAD = 0.06
 
 
 class Pilot:
-    """Finds the way of one robot from instant to instant.
+    """Steers one robot step by step.
 
-    :param speed_mps: the most it drives, kept to the robot's limits
+    :param speed_mps: maximum speed, within the robot's limits
     """
 
     def __init__(self, body: Body, speed_mps: float) -> None:
         self._body = body
         self._speed_mps = min(speed_mps, body.limits.linear_mps)
-        self._turn_rad_s = min(_MOST_TURN_RAD_S, body.limits.angular_rad_s)
+        self._turn_rad_s = min(_MAX_TURN_RAD_S, body.limits.angular_rad_s)
         self._side = 0.0
 
     def towards(self, senses: Senses, pose: Pose, x_m: float, y_m: float,
                 rest: bool = True) -> Optional[Velocity]:
-        """Return the velocity that leads to a place; None where there is no way.
+        """Return the velocity towards a position; None if the way is blocked.
 
-        :param pose: where the robot is, in the frame of the place
-        :param rest: it shall come to rest there
+        :param pose: pose of the robot in the frame of the position
+        :param rest: whether to come to rest there
         """
         left_m = way(pose, x_m, y_m)
         heading = self._free_heading(senses.points, turn_to(pose, x_m, y_m), left_m)
@@ -53,11 +53,11 @@ class Pilot:
         if abs(heading) > _TURN_FIRST_RAD:
             return Velocity(0.0, turn)
         most = math.sqrt(2.0 * _SLOWS_MPS2 * left_m) if rest else math.inf
-        speed = min(self._speed_mps, max(_LEAST_MPS, most)) * math.cos(heading) ** 2
+        speed = min(self._speed_mps, max(_MIN_MPS, most)) * math.cos(heading) ** 2
         return Velocity(speed, turn)
 
     def turned(self, pose: Pose, heading_rad: float) -> Optional[Velocity]:
-        """Return the velocity that turns a robot on the spot; None once it looks there."""
+        """Return the velocity that turns a robot on the spot; None at the heading."""
         off = wrapped(heading_rad - pose.heading_rad)
         if abs(off) <= HEADING_WITHIN_RAD:
             return None
@@ -65,9 +65,9 @@ class Pilot:
         return Velocity(0.0, turn)
 
     def _free_heading(self, points: np.ndarray, bearing: float, left_m: float) -> Optional[float]:
-        """Return the free heading nearest to a bearing [rad]; None where there is none."""
+        """Return the free heading nearest to a bearing [rad]; None if all are blocked."""
         room_m, reach_m = self._body.radius_m + CLEARANCE_M, min(left_m, LOOK_M)
-        # What is further off is in nobody's way; and mostly the straight heading is free.
+        # Points further off do not matter, and the straight heading is usually free.
         points = within_reach(points, reach_m + room_m)
         if free_ways(points, np.array([bearing]), room_m)[0] >= reach_m:
             self._side = 0.0
@@ -83,9 +83,9 @@ class Pilot:
 
 
 def free_ways(points: np.ndarray, headings: np.ndarray, radius_m: float) -> np.ndarray:
-    """Return how far a disc gets straight on into each heading before it touches a point [m].
+    """Return how far a disc can move along each heading before it touches a point [m].
 
-    What it touches already counts only where the heading leads towards it.
+    A point that it already touches only blocks headings towards it.
     """
     if not len(points):
         return np.full(len(headings), np.inf)

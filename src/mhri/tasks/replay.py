@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The task replay: a drive that was recorded before, by poses; says how far it was off.
+"""The task replay: repeats a recorded drive by its poses; reports the deviation.
 
-By odometry, as it was recorded. Backwards where the drive went backwards.
+The robot drives by odometry, as recorded, and backwards where the recorded drive did.
 """
 from dataclasses import replace
 import math
@@ -10,26 +10,25 @@ from typing import List, Optional, Sequence, Tuple
 
 import numpy as np
 
+from mhri.base.geometry import beside, Pose, within
 from mhri.base.limits import Velocity
-from mhri.base.mocap import Pose
 from mhri.sensors.brake import MARGIN_M
 from mhri.tasks.base import (
-    beside, DONE, Field, Senses, Start, Step, Task, TaskKind, TEXT, Values, WAITING, way, within,
-    wrapped)
+    DONE, Field, Senses, Start, Step, Task, TaskKind, TEXT, Values, WAITING, way, wrapped)
 from mhri.tasks.goto import Goto, SPEED, TIMEOUT_S
 from mhri.tasks.pilot import Pilot
 
 HERE, THERE = BEGINS = ('here', 'there')
-# Places of a drive are this far apart at least [m], and so many at most.
-STEP_M, MOST_PLACES = 0.05, 20000
-# A place counts as passed when the robot is this near [m]; the last one as reached.
+# Minimum distance of the poses of a drive [m], and their maximum number.
+STEP_M, MAX_PLACES = 0.05, 20000
+# Tolerance of passing a pose, and of reaching the last one [m].
 _PASSED_M, _REACHED_M = 0.12, 0.03
-# Where something stands on it, so much of the drive is left out at most [m].
+# Maximum part of a drive to leave out because of an obstacle [m].
 _SKIPS_M = 1.5
 
 
 def thinned(poses: Sequence[Pose]) -> Tuple[Pose, ...]:
-    """Return the poses of a drive that are apart, the last one of them all at the end."""
+    """Return the poses of a drive at a minimum spacing, including the last one."""
     kept: List[Pose] = []
     for pose in poses:
         if not kept or way(kept[-1], pose.x_m, pose.y_m) >= STEP_M:
@@ -42,7 +41,7 @@ def thinned(poses: Sequence[Pose]) -> Tuple[Pose, ...]:
 
 
 def laid(drive: Sequence[Pose], begin: Pose) -> Tuple[Pose, ...]:
-    """Return a drive moved and turned so that it begins at a pose."""
+    """Return a drive transformed so that it starts at a pose."""
     first = drive[0]
     turn = begin.heading_rad - first.heading_rad
     return tuple(Pose(*beside(begin, *within(first, pose)),
@@ -50,7 +49,7 @@ def laid(drive: Sequence[Pose], begin: Pose) -> Tuple[Pose, ...]:
 
 
 class _Off:
-    """How far a robot is off a drive, by one that measures it."""
+    """The deviation of a robot from a drive, by one measurement."""
 
     def __init__(self, drive: Sequence[Pose], by: str) -> None:
         self._places = np.array([(pose.x_m, pose.y_m) for pose in drive])
@@ -69,15 +68,15 @@ class _Off:
         self._end_m = way(pose, *self._places[-1])
 
     def words(self) -> str:
-        return 'by {} {:.3f} m at most, {:.3f} m in the mean, {:.3f} m at the end'.format(
+        return 'by {} {:.3f} m at most, {:.3f} m on average, {:.3f} m at the end'.format(
             self._by, max(self._seen), sum(self._seen) / len(self._seen), self._end_m)
 
 
 class Replay(Task):
-    """Drives through the poses of a drive, in their order.
+    """Drives through the poses of a drive in order.
 
-    :param drive: its poses by odometry, the first one first, at least two
-    :param begin: HERE: the drive is laid to where the robot is; THERE: it drives to the first pose
+    :param drive: its poses by odometry, at least two
+    :param begin: HERE: the drive starts where the robot is; THERE: it first drives to its start
     """
 
     def __init__(self, start: Start, drive: Sequence[Pose], begin: str, speed_mps: float) -> None:
@@ -95,7 +94,7 @@ class Replay(Task):
         self._off: List[_Off] = []
 
     def step(self, senses: Senses) -> Step:
-        """Return what leads to the next place."""
+        """Return the next step towards the next pose."""
         if self._way_there is not None:
             there = self._way_there.step(senses)
             if there.state != DONE:
@@ -112,7 +111,7 @@ class Replay(Task):
         self._places, self._back = list(places), _backwards(places)
         self._off = [_Off(places, 'odometry')]
         if senses.captured is not None:
-            # Seen from the robot as it stands now, the drive lies where odometry says.
+            # Poses of the drive relative to the robot, by odometry.
             seen = [beside(senses.captured, *within(senses.odometry, pose)) for pose in places]
             self._off.append(_Off([Pose(x, y, 0.0) for x, y in seen], 'motion capture'))
         left = [0.0]
@@ -137,17 +136,17 @@ class Replay(Task):
         aim = self._free_place(senses)
         velocity = None if aim is None else self._towards(senses, aim, last)
         if velocity is None:
-            return Step(state=WAITING, left_m=left_m, text='something is on its way')
+            return Step(state=WAITING, left_m=left_m, text='an obstacle is on its way')
         return Step(velocity, left_m=left_m, text='{:.1f} m of the drive to go'.format(left_m))
 
     def _is_passed(self, pose: Pose) -> bool:
-        """Tell whether the next place lies behind; where the drive turned back, it was reached."""
+        """Return whether the next pose is passed; at a turning point, whether it was reached."""
         turns = self._back[self._next] != self._back[self._next + 1]
         place = self._places[self._next]
         return way(pose, place.x_m, place.y_m) < (_REACHED_M if turns else _PASSED_M)
 
     def _free_place(self, senses: Senses) -> Optional[Pose]:
-        """Return the next place, or one soon after it if something stands there; else None."""
+        """Return the next pose, or one soon after it if that is blocked; None if all are."""
         for number in range(self._next, len(self._places)):
             place = self._places[number]
             if self._left[self._next] - self._left[number] > _SKIPS_M:
@@ -168,23 +167,23 @@ class Replay(Task):
         return velocity and Velocity(-velocity.linear_mps, velocity.angular_rad_s)
 
     def _turn(self, pose: Pose, place: Pose) -> Step:
-        """Return what turns it as it stood at the end, then how far it was off."""
+        """Return the step of the final turn, then the deviation."""
         self._arrived = True
         velocity = self._pilot.turned(pose, place.heading_rad)
         if velocity is not None:
-            return Step(velocity, left_m=0.0, text='turns as it stood at the end')
+            return Step(velocity, left_m=0.0, text='turns to the final heading')
         text = 'it was off ' + '; '.join(off.words() for off in self._off)
         return Step(state=DONE, left_m=0.0, text=text, said=(text,))
 
 
 def _backwards(places: Sequence[Pose]) -> List[bool]:
-    """Return for each place whether the drive came to it backwards."""
+    """Return for each pose whether the drive reached it backwards."""
     back = [within(one, two)[0] < 0.0 for one, two in zip(places, places[1:])]
     return back[:1] + back
 
 
 def make(values: Values, start: Start) -> Replay:
-    """Begin with what was read from a bag, else with the newest part of the robot's own trail.
+    """Start with the drive of a bag, else with the newest part of the robot's own trail.
 
     :raises ValueError: there is no drive
     """
@@ -201,11 +200,11 @@ def make(values: Values, start: Start) -> Replay:
 
 
 ROW = TaskKind(
-    'replay', 'Replay', 'a drive that was recorded, by poses; says how far it was off', (
+    'replay', 'Replay', 'repeats a recorded drive by its poses; reports the deviation', (
         Field('bag', '', 'file of the recording; else the robot\'s own trail', '', kind=TEXT),
         Field('topic', '', 'of the bag: odometry or poses; else the robot\'s odometry', '',
               kind=TEXT),
-        Field('seconds', 's', 'so much of its own trail', 60.0, 1.0, 86400.0),
-        Field('begin', '', 'here: where it stands; there: where the drive began, by odometry',
+        Field('seconds', 's', 'newest part of its own trail', 60.0, 1.0, 86400.0),
+        Field('begin', '', 'here: where it is; there: where the drive began, by odometry',
               HERE, kind=TEXT, choices=BEGINS),
         SPEED, TIMEOUT_S), make)

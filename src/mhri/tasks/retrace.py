@@ -1,36 +1,36 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The task return: to a mark, or back along the robot's own trail, by odometry."""
+"""The task return: drives to a mark, or back along the robot's own trail, by odometry."""
 import math
 from typing import List, Optional, Sequence, Tuple
 
 import numpy as np
 
 from mhri.base.config import shown
-from mhri.base.mocap import Pose
+from mhri.base.geometry import Pose
 from mhri.tasks.base import (
     Corners, DONE, Field, MARK, Senses, Start, Step, Task, TaskKind, TEXT, Values, WAITING, way,
     Where, wrapped)
 from mhri.tasks.goto import Goto, SPEED, spread, TIMEOUT_S
 from mhri.tasks.pilot import Pilot
 
-# Places of a trail are this far apart [m], and so many at most: the oldest go.
-STEP_M, MOST_PLACES = 0.1, 5000
-# A place counts as passed when the robot is this near [m]; the last one as reached.
+# Distance of the points of a trail [m], and their maximum number; the oldest are dropped.
+STEP_M, MAX_PLACES = 0.1, 5000
+# Tolerance of passing a point, and of reaching the last one [m].
 PASSED_M, THERE_M = 0.2, 0.06
-# Where a trail comes so near to itself again, what lies between is left out on the way back [m].
+# Loops that close within this distance are cut on the way back [m].
 CUT_M = 0.15
 
 
 class Trail:
-    """Where a robot has been, in the frame of its odometry."""
+    """The trail of a robot, in the frame of its odometry."""
 
     def __init__(self) -> None:
         self._places: List[Pose] = []
         self._times: List[float] = []
 
     def add(self, pose: Pose, now_s: float = 0.0) -> None:
-        """Take in a pose; one that leaps (its odometry began anew) begins the trail anew."""
+        """Add a pose; a jump (of restarted odometry) starts a new trail."""
         if self._places:
             moved_m = way(self._places[-1], pose.x_m, pose.y_m)
             if moved_m < STEP_M:
@@ -40,23 +40,23 @@ class Trail:
                 self._times.clear()
         self._places.append(pose)
         self._times.append(now_s)
-        del self._places[:-MOST_PLACES], self._times[:-MOST_PLACES]
+        del self._places[:-MAX_PLACES], self._times[:-MAX_PLACES]
 
     def places(self) -> Tuple[Pose, ...]:
-        """Return them, the oldest first."""
+        """Return its points, the oldest first."""
         return tuple(self._places)
 
     def ages_s(self, now_s: float) -> Tuple[float, ...]:
-        """Return how long ago it was at each of them [s]."""
+        """Return the age of each point [s]."""
         return tuple(now_s - at_s for at_s in self._times)
 
 
 class Path(Task):
-    """Drives along places one after the other.
+    """Drives along points in order.
 
-    :param places: (x, y) [m], the first one first
-    :param heading_rad: to look at in the end, None: as it comes
-    :param by_odometry: they are in the frame of odometry, not in that of the pose
+    :param places: (x, y) [m]
+    :param heading_rad: final heading, None: any
+    :param by_odometry: whether they are in the frame of odometry, not in that of the pose
     """
 
     def __init__(self, start: Start, places: Corners, speed_mps: float,
@@ -69,7 +69,7 @@ class Path(Task):
         self._passed_m = passed_m
 
     def step(self, senses: Senses) -> Step:
-        """Return what leads to the next place."""
+        """Return the next step towards the next point."""
         pose = senses.odometry if self._by_odometry else senses.pose
         while len(self._places) > 1 and way(pose, *self._places[0]) < self._passed_m:
             self._places.pop(0)
@@ -79,17 +79,17 @@ class Path(Task):
             velocity = None if self._heading_rad is None \
                 else self._pilot.turned(pose, self._heading_rad)
             if velocity is None:
-                return Step(state=DONE, left_m=0.0, text='it is there')
+                return Step(state=DONE, left_m=0.0, text='arrived')
             return Step(velocity, left_m=0.0, text='turns to its heading')
         left_m = near_m + sum(math.dist(*pair) for pair in zip(self._places, self._places[1:]))
         velocity = self._pilot.towards(senses, pose, *self._places[0], rest=last)
         if velocity is None:
-            return Step(state=WAITING, left_m=left_m, text='something is on its way')
+            return Step(state=WAITING, left_m=left_m, text='an obstacle is on its way')
         return Step(velocity, left_m=left_m, text='{:.1f} m to go'.format(left_m))
 
 
 def make(values: Values, start: Start) -> Task:
-    """Begin: to a mark, side by side, or with the newest place of the trail, without its loops.
+    """Start: to a mark, side by side, or back along the trail without its loops.
 
     :raises ValueError: there is no such mark, or the robot has no trail
     """
@@ -101,7 +101,7 @@ def make(values: Values, start: Start) -> Task:
         return Goto(start, *spread(mark, start.place), mark.heading_rad, values.number('speed'))
     most_m, trail, gone_m = values.number('distance'), list(reversed(start.trail)), 0.0
     if not trail:
-        raise ValueError('it has no trail yet: nobody has seen it move')
+        raise ValueError('it has no trail yet, since it has not moved')
     kept = [trail[0]]
     for pose in trail[1:]:
         gone_m += way(kept[-1], pose.x_m, pose.y_m)
@@ -115,9 +115,9 @@ def make(values: Values, start: Start) -> Task:
 
 
 def without_loops(places: Sequence[Tuple[float, float]], cut_m: float) -> Corners:
-    """Return a way with each loop left out: from a place on to the last that is so near to it [m].
+    """Return a path without loops: after each point, skip to the last one within a distance [m].
 
-    So a robot drives where it has been, and beside it by no more than that.
+    Thus the robot stays within that distance of its own path.
     """
     kept, number, all_places = [places[0]], 0, np.array(places)
     while number < len(places) - 1:
@@ -128,14 +128,14 @@ def without_loops(places: Sequence[Tuple[float, float]], cut_m: float) -> Corner
 
 
 def slots(values: Values, count: int, where: Where) -> Corners:
-    """Return where the robots of a team end [m]: side by side at the mark; none without one."""
+    """Return the goals of a team [m]: side by side at the mark; () without one."""
     mark = where(MARK + values.text('mark')) if values.text('mark') else None
     return tuple(spread(mark, number) for number in range(count)) if mark else ()
 
 
 ROW = TaskKind(
     'return', 'Return', 'to a mark, or back along its own trail to where it was first seen',
-    (Field('mark', '', 'name of a mark; else along its trail, by odometry', '', kind=TEXT,
+    (Field('mark', '', 'name of a mark; default: along its trail, by odometry', '', kind=TEXT,
            needs_place=True),
-     Field('distance', 'm', 'go back by no more than this, 0 for all of it', 0.0, 0.0, 10000.0),
+     Field('distance', 'm', 'maximum distance to go back, 0 for all of it', 0.0, 0.0, 10000.0),
      SPEED, TIMEOUT_S), make, slots=slots)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Every task that there is: a row each, in the order in which they are offered."""
+"""All tasks of mhri, in their order on the screen."""
 from typing import Dict, Iterable, List, Tuple
 
 from mhri.base.config import ConfigError
@@ -15,9 +15,9 @@ BY_KEY = by_key(TASKS)
 
 def with_exports(exports: Iterable[Tuple[str, object]]
                  ) -> Tuple[Dict[str, TaskKind], List[ConfigError]]:
-    """Return ({key: row}, errors): ours, and those that other packages export.
+    """Return ({key: row}, errors) of mhri's tasks and of those exported by other packages.
 
-    :param exports: (where it comes from, the row) of each; a bad one hides no good one
+    :param exports: (origin, row) of each; a bad one does not affect the others
     """
     rows, errors = dict(BY_KEY), []
     for origin, row in exports:
@@ -27,17 +27,17 @@ def with_exports(exports: Iterable[Tuple[str, object]]
         else:
             problem = problem or 'there is a task {!r} already, choose another key'.format(
                 getattr(row, 'key', ''))
-            errors.append(ConfigError(origin, 'ROW', problem + '; mend it there and start mhri '
+            errors.append(ConfigError(origin, 'ROW', problem + '; fix it there and start mhri '
                                       'again'))
     return rows, errors
 
 
 def row_problem(row: object) -> str:
-    """Return why an object is no row of a task, '' if it is one."""
+    """Return why an object is not the row of a task, '' if it is."""
     if not isinstance(row, TaskKind):
         return 'expected a mhri.tasks.base.TaskKind, got {}'.format(type(row).__name__)
     if not isinstance(row.key, str) or name_problem(row.key):
-        return 'its key is no name: {!r:.60}'.format(row.key)
+        return 'its key is not a name: {!r:.60}'.format(row.key)
     if not all(isinstance(text, str) for text in (row.label, row.text)) or not callable(row.make):
         return 'its label and text have to be texts, its make a function'
     fields = row.fields

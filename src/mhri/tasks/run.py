@@ -1,15 +1,18 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""One robot on its task: when it may drive, what holds it, and everything that ends it.
+"""The run of one robot on its task: its phases, and the reasons to hold or end it.
 
-States and what leads out of them::
+States and transitions::
 
-    readying  the robot is not heard yet, zeros   all is heard -> joining
-    joining   zeros, until the gates say that     it obeys -> under way
-              the robot obeys its task
-    under way what the task wants, behind the     the task is done, or anything of _END -> ended
-              brake
-    ended     zeros                               (nothing): nothing resumes by itself
+    readying  nothing; zeros while the robot      all data received, and it obeys a task or had
+              still obeys its previous task       no velocity for LEFT_OUT_S -> joining
+    joining   zeros                               the mux reports that it obeys its task
+                                                  -> under way
+    under way the velocity of the task, limited   the task is done -> ended
+              by brake, map and fence
+    ended     zeros                               none: no task resumes by itself
+
+The first three phases also end for a reason of :meth:`RobotRun._reason`.
 """
 from dataclasses import dataclass, replace
 import math
@@ -17,42 +20,46 @@ from typing import List, Optional, Tuple
 
 import numpy as np
 
+from mhri.base import reasons
 from mhri.base.battery import FLAT_AT
 from mhri.base.limits import Velocity, ZERO
-from mhri.driving.gate import HELD, OPERATOR, TASK
+from mhri.base.reasons import Reason
+from mhri.driving.robot_rule import OPERATOR, TASK
 from mhri.sensors.brake import (
-    braked, CRAWL_MPS, everywhere, Looks, MARGIN_M, REACTION_S, SCAN_OLD_S, seen_speed)
+    braked, CRAWL_MPS, Looks, MARGIN_M, REACTION_S, SCAN_OLD_S, seen_velocity)
 from mhri.tasks.base import (
-    BLOCKED, Body, discs, ENDS, FAILED, LOST, RUNNING, Senses, Step, STOPPED, TAKEN_OVER, Task,
+    Act, BLOCKED, Body, discs, ENDS, FAILED, LOST, RUNNING, Senses, Step, STOPPED, TAKEN_OVER, Task,
     TIMEOUT, turn_to, WAITING, way)
 from mhri.tasks.fence import kept_inside
 
 READYING, JOINING, UNDER_WAY, ENDED = 'readying', 'joining', 'under_way', 'ended'
-# Odometry or place that is older is lost [s]; what is new has so long to be heard.
+# Maximum age of odometry and place [s]; time for the first data to arrive.
 OLD_S, READY_S, JOIN_S = 0.5, 5.0, 3.0
+# After a stop or a change of control the mux accepts a task for a robot only after nothing was
+# published for that robot for this time [s].
+LEFT_OUT_S = 0.4
 BLOCKED_AFTER_S = 5.0
-# Longer where it lets another robot pass.
+# Longer while it gives way to another robot.
 PASSED_AFTER_S = 20.0
-# Who goes second stands while the other is within this [m] and this far off its heading [rad].
+# A robot gives way while the other is within this distance [m] and this bearing [rad].
 PASS_M, PASS_RAD = 0.8, 0.8
 _STANDS_MPS = 0.02
 _HELD_ANEW_S = 1.0
-# What lasers do not see when it is near: other robots, which may move by so much in a moment [m].
+# Margin around other robots: they move, and lasers may miss them when near [m].
 _MOVES_M = 0.06
 
 
 @dataclass(frozen=True)
 class Facts:
-    """What is known of a robot at one instant, beside what it senses.
+    """The state of a robot at one instant, in addition to its :class:`Senses`.
 
-    ``answers`` is whether the gates are heard, ``known`` whether they know the robot, ``obeys`` and
-    ``stands`` what they say of it. Ages [s] are None before anything was heard; ``place_age_s`` is
-    that of its place, 0 where the task needs none or it does not grow old, None where it is not
-    placed; ``place_text`` says the same in words; ``settling`` that its place was just corrected by
-    far, '' where it was not. ``has_laser`` is false for a type with neither laser nor depth camera,
-    which has no brake; ``looks`` tells where the one it has looks, ``unplaced`` that nobody says
-    where one of several sits.
-    ``battery`` is in [0, 1], None where it is not known.
+    ``answers`` is whether the mux answers, ``known`` whether it has the robot, ``obeys`` and
+    ``stands`` what it reports about it. Ages [s] are None before the first data; ``place_age_s`` is
+    that of its place, 0 if the task needs none or it does not age, None if it is not placed;
+    ``place_text`` describes it; ``settling`` is a sentence if its place was just corrected by a
+    large distance, else ''. ``has_laser`` is false for types without laser and depth camera, which
+    have no brake; ``looks`` is the field of view of that sensor, ``unplaced`` whether the position
+    of one of several is unknown. ``battery`` is in [0, 1], None if unknown.
     """
 
     now_s: float
@@ -67,23 +74,23 @@ class Facts:
     settling: str = ''
     scan_age_s: Optional[float] = None
     has_laser: bool = True
-    looks: Looks = everywhere
+    looks: Looks = None
     unplaced: bool = False
     battery: Optional[float] = None
     senses: Optional[Senses] = None
 
     @property
     def crawl_mps(self) -> float:
-        """How fast it may back away without an eye for it [m/s]."""
+        """Maximum speed towards places outside every field of view [m/s]."""
         return 0.0 if self.unplaced else CRAWL_MPS
 
 
 class RobotRun:
     """The run of one task by one robot.
 
-    :param timeout_s: 0 for none
-    :param now_s: when it was asked for
-    :param placed: the robot has to be placed for it
+    :param timeout_s: time limit [s], 0: without
+    :param now_s: time of the request
+    :param placed: whether the robot has to be placed for it
     """
 
     def __init__(self, robot: str, task: Optional[Task], body: Body, timeout_s: float,
@@ -94,19 +101,24 @@ class RobotRun:
         self._body = body
         self._timeout_s = timeout_s
         self._begun_s = self._phase_s = now_s
+        # Time of the last velocity for the robot, at first that of the request: the previous task
+        # may just have ended.
+        self._named, self._left_out_s = False, now_s
         self.phase = READYING
         self.state = WAITING
         self.text = 'waits for its sensors'
         self.left_m: Optional[float] = None
         self.said: List[str] = []
+        #: accessories to use now; who uses them clears them
+        self.acts: List[Act] = []
         self.ended_s = math.inf
         self._held_since: Optional[float] = None
         self._held_last = 0.0
 
     @property
     def drives(self) -> bool:
-        """Whether the robot shall have the velocities of :meth:`tick`."""
-        return True
+        """Whether the velocities of :meth:`tick` apply to the robot."""
+        return self.phase != READYING or self._named
 
     def end(self, state: str, text: str, now_s: float) -> None:
         """End it, unless it has ended."""
@@ -114,7 +126,7 @@ class RobotRun:
             self.phase, self.state, self.text, self.ended_s = ENDED, state, text, now_s
 
     def tick(self, facts: Facts) -> Velocity:
-        """Let time pass; return what the robot shall do now."""
+        """Return the velocity of the robot for this step."""
         if self.phase != ENDED:
             end = self._reason(facts)
             if end is not None:
@@ -128,13 +140,13 @@ class RobotRun:
         return ZERO
 
     def _reason(self, facts: Facts) -> Optional[Tuple[str, str]]:
-        """Return (state, sentence) of what ends the task now, None for nothing."""
-        if facts.stop_all:
-            return STOPPED, 'stop-all is in force: release it, then start the task again'
+        """Return (state, sentence) if something ends the task now, else None."""
+        if facts.stop_all or facts.stands == reasons.STOPPED_ALONE:
+            return STOPPED, Reason(reasons.STOPPED if facts.stop_all else facts.stands).sentence
         if not facts.answers:
-            return LOST, 'the drive service does not answer'
+            return LOST, Reason(reasons.DRIVE_SILENT).what
         if facts.obeys == OPERATOR:
-            return TAKEN_OVER, 'it is checked: the operator drives it'
+            return TAKEN_OVER, 'it is selected: the operator drives it'
         if facts.battery is not None and facts.battery <= FLAT_AT:
             return FAILED, 'its battery is at {:.0f} %'.format(100.0 * facts.battery)
         if self._timeout_s and facts.now_s - self._begun_s > self._timeout_s:
@@ -151,14 +163,14 @@ class RobotRun:
         return LOST, self.text
 
     def _lost(self, facts: Facts) -> Optional[Tuple[str, str]]:
-        """Return what is lost of a robot that was there."""
-        if not facts.known or facts.stands == HELD or facts.stands == 'not_heard':
-            return LOST, 'the drive service does not hear it any more'
+        """Return (state, sentence) if data of the robot or its link to the mux are lost."""
+        if not facts.known or facts.stands == reasons.NOT_HEARD:
+            return LOST, 'the drive service no longer hears it'
         if facts.odometry_age_s is None or facts.odometry_age_s > OLD_S:
             return LOST, 'nothing from its odometry for {:.1f} s'.format(
                 facts.odometry_age_s or 0.0)
         if _unplaced(facts):
-            return LOST, 'its place is not known any more: ' + facts.place_text
+            return LOST, 'its place is no longer known: ' + facts.place_text
         if self.phase == JOINING and facts.now_s - self._phase_s > JOIN_S:
             return FAILED, 'its task does not reach it: is the enabling pedal pressed?'
         if self.phase == UNDER_WAY and facts.obeys != TASK:
@@ -167,9 +179,14 @@ class RobotRun:
         return None
 
     def _get_ready(self, facts: Facts) -> None:
+        # While the robot obeys its previous task, zeros are published for that one.
+        self._named = facts.obeys == TASK
+        if self._named:
+            self._left_out_s = facts.now_s
         missing = missing_senses(facts)
         if missing:
             self.text = 'waits for ' + missing
+        if missing or not self._named and facts.now_s - self._left_out_s < LEFT_OUT_S:
             return
         self.phase, self._phase_s = JOINING, facts.now_s
         self.text = 'waits for the drive service to let it drive'
@@ -179,7 +196,7 @@ class RobotRun:
             self.phase, self._phase_s = UNDER_WAY, facts.now_s
 
     def _drive(self, facts: Facts) -> Velocity:
-        """Return what the task wants, as far as the way is free."""
+        """Return the velocity of the task, limited by the free way."""
         assert self._task is not None and facts.senses is not None
         robots = discs(facts.senses.pose, facts.senses.others.values(), _MOVES_M)
         met = np.vstack((facts.senses.points, robots))
@@ -187,11 +204,12 @@ class RobotRun:
         step = self._task.step(senses)
         self.left_m = step.left_m
         self.said += step.said
+        self.acts += step.acts
         if step.state in ENDS:
             self.end(step.state, step.text, facts.now_s)
             return ZERO
-        if not all(map(math.isfinite, (step.velocity.linear_mps, step.velocity.angular_rad_s))):
-            self.end(FAILED, 'its task asked for a velocity that is no number', facts.now_s)
+        if not step.velocity.is_finite():
+            self.end(FAILED, 'its task requested a velocity that is not a number', facts.now_s)
             return ZERO
         radius_m = self._body.radius_m
         free = braked(step.velocity, met, radius_m, facts.scan_age_s, facts.looks,
@@ -199,54 +217,56 @@ class RobotRun:
             if facts.has_laser else braked(step.velocity, robots, radius_m, 0.0)
         on_floor = braked(free, senses.floor, radius_m, 0.0)
         velocity = kept_inside(on_floor, senses.pose, senses.fence, self._body)
-        held = facts.settling or self._held(step, free, facts) \
+        passes = '' if facts.settling else self._lets_pass(step, facts.senses)
+        held = facts.settling or passes or self._held(step, free, facts) \
             or _stands_at('the end of the free floor on the map', free, on_floor) \
             or _stands_at('the fence', on_floor, velocity)
         self._mark(held, facts.now_s)
         self.state, self.text = (WAITING, held) if held else (
             RUNNING, step.text + self._unseen(step.velocity, free, facts))
-        patience_s = PASSED_AFTER_S if held.startswith(_LETS_PASS) else BLOCKED_AFTER_S
+        patience_s = PASSED_AFTER_S if passes else BLOCKED_AFTER_S
         if held and self._held_since is not None \
                 and facts.now_s - self._held_since > patience_s:
             self.end(BLOCKED, 'for {:g} s: {}'.format(patience_s, held), facts.now_s)
-        if self.phase == ENDED or facts.settling or held.startswith(_LETS_PASS):
+        if self.phase == ENDED or facts.settling or passes:
             return ZERO
         return velocity
 
+    def _lets_pass(self, step: Step, senses: Senses) -> str:
+        """Describe the robot to which it gives way, '' without one."""
+        assert self._task is not None
+        first = _to_let_pass(senses, self._task.pass_by) \
+            if step.state != WAITING and step.velocity.linear_mps > _STANDS_MPS else ''
+        return first and 'it gives way to ' + first
+
     def _held(self, step: Step, velocity: Velocity, facts: Facts) -> str:
-        """Return what holds the robot, in words; '' for nothing."""
+        """Describe the cause of a stop, '' without one."""
         assert self._task is not None and facts.senses is not None
         if step.state == WAITING:
             return step.text
-        wants = abs(step.velocity.linear_mps) > _STANDS_MPS
-        if not wants:
-            return ''
-        first = _to_let_pass(facts.senses, self._task.pass_by) \
-            if step.velocity.linear_mps > 0.0 else ''
-        if first:
-            return _LETS_PASS + first
-        if abs(velocity.linear_mps) > _STANDS_MPS:
+        if step.velocity.speed_mps <= _STANDS_MPS or velocity.speed_mps > _STANDS_MPS:
             return ''
         blind = facts.has_laser and (facts.scan_age_s is None or facts.scan_age_s > SCAN_OLD_S)
         if facts.unplaced and (blind or self._unseen(step.velocity, velocity, facts)):
             return 'the place of one of its lasers is unknown'
         if blind:
-            return 'its laser or depth camera has said nothing for {:.1f} s'.format(
+            return 'no data from its laser or depth camera for {:.1f} s'.format(
                 facts.scan_age_s or 0.0)
-        return 'it does not see where it would go' \
-            if self._unseen(step.velocity, velocity, facts) else 'something is in its way'
+        return 'no sensor covers the way' \
+            if self._unseen(step.velocity, velocity, facts) else 'an obstacle is in its way'
 
     def _unseen(self, wanted: Velocity, free: Velocity, facts: Facts) -> str:
-        """Return that the robot is slow for want of an eye on its way; '' where it is not."""
-        if not facts.has_laser or facts.scan_age_s is None or wanted.linear_mps == 0.0:
+        """Return a note if the robot is slow since no sensor covers its way, else ''."""
+        if not facts.has_laser or facts.scan_age_s is None or wanted.speed_mps == 0.0:
             return ''
-        seen = seen_speed(wanted, self._body.radius_m + MARGIN_M, REACTION_S + facts.scan_age_s,
-                          facts.looks, facts.crawl_mps)
-        slow = abs(seen) < abs(wanted.linear_mps) and abs(free.linear_mps) >= abs(seen) - 1e-3
-        return ', slowly: it does not see that way' if slow else ''
+        seen_mps = seen_velocity(
+            wanted, self._body.radius_m + MARGIN_M, REACTION_S + facts.scan_age_s, facts.looks,
+            facts.crawl_mps).speed_mps
+        slow = seen_mps < wanted.speed_mps and free.speed_mps >= seen_mps - 1e-3
+        return ', slowly: no sensor looks that way' if slow else ''
 
     def _mark(self, held: str, now_s: float) -> None:
-        """Note since when it is held; moved for a moment it is not."""
+        """Record the start of a stop; a motion for longer than _HELD_ANEW_S resets it."""
         if held:
             self._held_since = now_s if self._held_since is None else self._held_since
             self._held_last = now_s
@@ -254,12 +274,9 @@ class RobotRun:
             self._held_since = None
 
 
-_LETS_PASS = 'it lets pass '
-
-
 def _stands_at(what: str, free: Velocity, velocity: Velocity) -> str:
-    """Return what holds it of a velocity that was free, in words; '' where nothing does."""
-    held = abs(velocity.linear_mps) <= _STANDS_MPS < abs(free.linear_mps)
+    """Describe the limit that stops a free velocity, '' if it does not."""
+    held = velocity.speed_mps <= _STANDS_MPS < free.speed_mps
     return 'it is at ' + what if held else ''
 
 
@@ -268,7 +285,7 @@ def _unplaced(facts: Facts) -> bool:
 
 
 def missing_senses(facts: Facts) -> str:
-    """Return what has not been heard yet, in words; '' where all is there."""
+    """Describe the first of the missing data, '' if complete."""
     for missing, words in (
             (not facts.known, 'the drive service to know it'),
             (facts.odometry_age_s is None or facts.odometry_age_s > OLD_S, 'its odometry'),
@@ -282,7 +299,7 @@ def missing_senses(facts: Facts) -> str:
 
 
 def _to_let_pass(senses: Senses, pass_by: Tuple[str, ...]) -> str:
-    """Return the robot that is in front and goes first, '' where there is none."""
+    """Return the robot ahead with right of way, '' without one."""
     for name, other in senses.others.items():
         place = other.pose.x_m, other.pose.y_m
         if other.goes_first and name not in pass_by and way(senses.pose, *place) < PASS_M \

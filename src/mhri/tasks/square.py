@@ -1,20 +1,20 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The task square: drive a square by odometry, and say how far off it ends."""
+"""The task square: drives a square by odometry, and reports its final error."""
 import math
 from typing import List, Optional, Tuple
 
-from mhri.base.mocap import Pose
+from mhri.base.geometry import beside, Pose
 from mhri.tasks.base import (
-    beside, DONE, Field, REQUIRED, RUNNING, Senses, shown, Start, Step, Task, TaskKind, Values, way,
+    DONE, Field, REQUIRED, RUNNING, Senses, shown, Start, Step, Task, TaskKind, Values, way,
     wrapped)
 from mhri.tasks.goto import Goto, SPEED, TIMEOUT_S
 
 
 class Square(Task):
-    """Four sides by odometry, each corner said as it is reached.
+    """Four sides by odometry; each corner is reported when it is reached.
 
-    :param number: of rounds
+    :param number: number of rounds
     """
 
     def __init__(self, start: Start, side_m: float, number: int, speed_mps: float) -> None:
@@ -27,7 +27,7 @@ class Square(Task):
         self._corner = 0
 
     def step(self, senses: Senses) -> Step:
-        """Return what leads to the next corner."""
+        """Return the next step towards the next corner."""
         if self._begun is None:
             self._begun = (senses.odometry, senses.captured)
             self._legs = self._lay(senses.odometry)
@@ -58,7 +58,7 @@ class Square(Task):
         return legs
 
     def _error(self, senses: Senses) -> str:
-        """Say how far from its start the robot ended, by each that measures it."""
+        """Report how far from its start the robot ended, by each measurement."""
         assert self._begun is not None
         words = ['by odometry ' + _apart(self._begun[0], senses.odometry)]
         if self._begun[1] is not None and senses.captured is not None:
@@ -73,12 +73,12 @@ def _apart(one: Pose, other: Pose) -> str:
 
 
 def make(values: Values, start: Start) -> Square:
-    """Begin."""
+    """Start."""
     return Square(start, values.number('side'), int(values.number('number')),
                   values.number('speed'))
 
 
 ROW = TaskKind(
-    'square', 'Square', 'to the left, by odometry; says each corner, and how far off it ends',
+    'square', 'Square', 'to the left, by odometry; reports each corner, and the final error',
     (Field('side', 'm', 'length of a side', REQUIRED, 0.2, 100.0),
      Field('number', '', 'rounds', 1.0, 1.0, 100.0, whole=True), SPEED, TIMEOUT_S), make)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Words typed in a terminal made into a task: ``bot1 goto 2.0 1.5``."""
+"""Parses a task typed in a terminal: ``bot1 goto 2.0 1.5``."""
 from typing import Dict, List, Mapping, Sequence, Tuple
 
 import yaml
@@ -10,7 +10,7 @@ from mhri.tasks.base import REQUIRED, TaskKind
 
 
 class TaskWordsError(ValueError):
-    """Words that are no task; says what would be."""
+    """Invalid words; the text names the expected ones."""
 
 
 def parameters_of(words: Sequence[str], kinds: Mapping[str, TaskKind]
@@ -19,10 +19,10 @@ def parameters_of(words: Sequence[str], kinds: Mapping[str, TaskKind]
 
     :param words: robots with commas between, the task, and its parameters: in the order of its
         fields, or ``name=value``
-    :raises TaskWordsError: they cannot be understood
+    :raises TaskWordsError: they are invalid
     """
     if len(words) < 2:
-        raise TaskWordsError('say which robot and which task, e.g. bot1 goto 2.0 1.5')
+        raise TaskWordsError('name a robot and a task, e.g. bot1 goto 2.0 1.5')
     kind = kinds.get(words[1])
     if kind is None:
         raise TaskWordsError('no task {}; there are {}'.format(words[1], ', '.join(kinds)))
@@ -49,11 +49,11 @@ def parameters_of(words: Sequence[str], kinds: Mapping[str, TaskKind]
 def usage(kinds: Sequence[TaskKind]) -> str:
     """Return the help: each task with its parameters, units and defaults."""
     lines = ['usage: mhri_task ROBOT[,ROBOT...] TASK [VALUE | NAME=VALUE]...', '',
-             'Ctrl-C ends the task. Robots have to be in the list, and not checked.', '']
+             'Ctrl-C ends the task. Robots have to be in the list, and not selected.', '']
     for kind in kinds:
         lines.append('{:<8} {}'.format(kind.key, kind.text))
         for row in kind.fields:
-            default = 'has to be given' if row.default == REQUIRED else \
+            default = 'required' if row.default == REQUIRED else \
                 'may be left out' if row.default is None else 'else {:g}'.format(row.default) \
                 if isinstance(row.default, float) else 'else {}'.format(row.default)
             lines.append('    {:<9} {}{}; {}'.format(

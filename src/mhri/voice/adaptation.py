@@ -1,13 +1,13 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The model's sounds moved towards one person's voice, from sentences known beforehand.
+"""Adapts the acoustic model to one person's voice, from sentences with known text.
 
-What is moved are the means of the Gaussians, in the two standard steps: an affine transformation of
-all of them that makes what was said most likely (MLLR: Leggetter and Woodland, 1995), and then each
-a part of the way to what was heard of it (MAP: Gauvain and Lee, 1994). Everything else of the model
-stays. Silence takes the second step alone, since it is the room's: left out, the sounds beside a
-pause become like the room, and pauses seem spoken. It is for phonetically tied models, one codebook
-for each sound, as pocketsphinx-en-us is.
+Only the means of the Gaussians are adapted, in the two standard steps: an affine transformation of
+all means that maximises the likelihood of the sentences (MLLR: Leggetter and Woodland, 1995), and
+then a shift of each mean towards its observed mean (MAP: Gauvain and Lee, 1994). The rest of the
+model is unchanged. Silence takes only the second step, since it depends on the room: without that,
+the sounds beside a pause become like the room, and pauses seem spoken. This works for phonetically
+tied models with one codebook for each sound, such as pocketsphinx-en-us.
 """
 import struct
 from dataclasses import dataclass, replace
@@ -17,26 +17,26 @@ import numpy as np
 
 SILENCE = 'SIL'
 _NOT_SPOKEN = [SILENCE, '+NSN+', '+SPN+']
-# Frames of 10 ms. Drawn only once, with an inertia of 10, a sound that a voice says much unlike the
-# model stayed halfway: "deselect" was taken for "please select".
+# Frames of 10 ms. With a single MAP step and an inertia of 10, a sound that a voice pronounces very
+# differently from the model stayed halfway: "deselect" was recognised as "please select".
 _TRANSFORMATIONS, _REST_FRAMES, _DRAWN, _INERTIA = 2, 20.0, 3, 5.0
 _STATES = 3
-_LEAST_WEIGHT = 1e-7
-_LEAST_VARIANCE = 1e-4
+_MIN_WEIGHT = 1e-7
+_MIN_VARIANCE = 1e-4
 # One step of the logarithms in pocketsphinx's files: 2^10 in base 1.0001.
 _STEP = 1024 * np.log(1.0001)
 
 
 class ModelError(Exception):
-    """A file of the model is not what is expected; the text names it."""
+    """A file of the model has unexpected content; the text names it."""
 
 
 @dataclass(frozen=True)
 class Sounds:
-    """A model of sounds.
+    """An acoustic model.
 
     ``means`` and ``variances`` are [sound, stream, density, dimension], ``weights`` [sound, state,
-    stream, density]: those of the sound in no context; ``phones`` the names of the sounds.
+    stream, density], for context-independent sounds; ``phones`` are the names of the sounds.
     """
 
     phones: Tuple[str, ...]
@@ -48,11 +48,11 @@ class Sounds:
 def read_gaussians(data: bytes, name: str) -> np.ndarray:
     """Return the numbers in a file ``means`` or ``variances``.
 
-    :raises ModelError: it is none with three streams of the same size
+    :raises ModelError: it is not such a file, or its streams differ in size
     """
     head, mark, rest = data.partition(b'endhdr\n')
     if not mark or len(rest) < 32 or rest[:4] != b'\x44\x33\x22\x11':
-        raise ModelError('{} is no file of Gaussians'.format(name))
+        raise ModelError('{} is not a file of Gaussians'.format(name))
     books, streams, densities = struct.unpack_from('<3i', rest, 4)
     if not 0 < streams <= 4:
         raise ModelError('{} has {} streams'.format(name, streams))
@@ -65,12 +65,12 @@ def read_gaussians(data: bytes, name: str) -> np.ndarray:
         raise ModelError('{} is cut off'.format(name))
     values = np.frombuffer(rest, '<f4', count, at + 4)
     if not np.isfinite(values).all():
-        raise ModelError('{} has numbers that are none'.format(name))
+        raise ModelError('{} contains NaN or infinity'.format(name))
     return values.reshape(books, streams, densities, sizes[0]).astype(float)
 
 
 def write_gaussians(values: np.ndarray) -> bytes:
-    """Return a file as :func:`read_gaussians` reads it."""
+    """Return the content of a file for :func:`read_gaussians`."""
     books, streams, densities, size = values.shape
     head = struct.pack('<4i', 0x11223344, books, streams, densities)
     head += struct.pack('<{}i'.format(streams + 1), *[size] * streams, values.size)
@@ -80,7 +80,7 @@ def write_gaussians(values: np.ndarray) -> bytes:
 def read_phones(data: bytes) -> Tuple[str, ...]:
     """Return the names of the sounds in a file ``mdef``, in the order of their codebooks.
 
-    :raises ModelError: it is no binary mdef, or its sounds have not three states each
+    :raises ModelError: it is not a binary mdef, or its sounds do not have three states each
     """
     if data[:4] != b'BMDF':
         raise ModelError('mdef is not binary')
@@ -95,7 +95,7 @@ def read_phones(data: bytes) -> Tuple[str, ...]:
 
 
 def read_weights(data: bytes, phones: int) -> np.ndarray:
-    """Return the weights of the densities in a file ``sendump``, for sounds in no context.
+    """Return the weights of the densities in a file ``sendump``, for context-independent sounds.
 
     :raises ModelError: its weights are clustered
     """
@@ -114,12 +114,13 @@ def read_weights(data: bytes, phones: int) -> np.ndarray:
     costs = np.frombuffer(data, np.uint8, streams[0] * densities * pdfs, at + 8)
     costs = costs.reshape(streams[0], densities, pdfs)[:, :, :_STATES * phones]
     weights = np.exp(-_STEP * costs.astype(float)).reshape(streams[0], densities, phones, _STATES)
-    return weights.transpose(2, 3, 0, 1) + _LEAST_WEIGHT
+    return weights.transpose(2, 3, 0, 1) + _MIN_WEIGHT
 
 
 def features(cepstra: np.ndarray) -> np.ndarray:
-    """Return [frame, stream, dimension] of cepstra [frame, dimension]: without their mean, and
-    their first and second differences, as pocketsphinx takes them.
+    """Return the features [frame, stream, dimension] of cepstra [frame, dimension].
+
+    As in pocketsphinx, these are the cepstra minus their mean, with first and second differences.
     """
     whole = np.pad(cepstra - cepstra.mean(axis=0), ((3, 3), (0, 0)), 'edge')
     count = len(cepstra)
@@ -130,10 +131,10 @@ def features(cepstra: np.ndarray) -> np.ndarray:
 
 
 class Network(NamedTuple):
-    """The states a sentence may run through: its sounds, with silence where one may pause.
+    """The states of a sentence: its sounds, with optional silence at possible pauses.
 
-    ``sound`` and ``state`` [place]; ``before`` [place, way]: places one may come from, itself the
-    first; ``first`` and ``last``: places where it may begin and end.
+    ``sound`` and ``state`` [place]; ``before`` [place, way]: the possible predecessors, first the
+    place itself; ``first`` and ``last``: the places where a sentence may begin and end.
     """
 
     sound: np.ndarray
@@ -144,7 +145,7 @@ class Network(NamedTuple):
 
 
 def network(words: Sequence[Sequence[Sequence[int]]], silence: int) -> Network:
-    """Return the network of words, each given by the ways in which it is spoken (sounds)."""
+    """Return the network of words, each given by its pronunciations (sounds)."""
     sound: List[int] = []
     state: List[int] = []
     before: List[List[int]] = []
@@ -173,7 +174,7 @@ def network(words: Sequence[Sequence[Sequence[int]]], silence: int) -> Network:
 
 def densities(sounds: Sounds, frames: np.ndarray, phone: int) -> np.ndarray:
     """Return the logarithm of each density of a sound [frame, stream, density]."""
-    means, variances = sounds.means[phone], np.maximum(sounds.variances[phone], _LEAST_VARIANCE)
+    means, variances = sounds.means[phone], np.maximum(sounds.variances[phone], _MIN_VARIANCE)
     over = 1.0 / variances
     frames = frames.transpose(1, 0, 2)
     square = (frames ** 2 @ over.transpose(0, 2, 1)
@@ -184,7 +185,7 @@ def densities(sounds: Sounds, frames: np.ndarray, phone: int) -> np.ndarray:
 
 
 def path(sounds: Sounds, frames: np.ndarray, net: Network) -> Tuple[np.ndarray, float]:
-    """Return the place of each frame on the likeliest way through a network, and its score."""
+    """Return the place of each frame on the most likely path through a network, and its score."""
     scores = np.zeros((len(frames), len(net.sound)))
     for phone in set(net.sound.tolist()):
         own = densities(sounds, frames, phone)
@@ -213,14 +214,14 @@ def path(sounds: Sounds, frames: np.ndarray, net: Network) -> Tuple[np.ndarray, 
 
 @dataclass(frozen=True)
 class Counts:
-    """What was heard of each density: how much of it [sound, stream, density], and the sum."""
+    """Observations of each density: total weight [sound, stream, density], and weighted sum."""
 
     amount: np.ndarray
     total: np.ndarray
 
 
 def count(sounds: Sounds, said: Sequence[Tuple[np.ndarray, Network]]) -> Counts:
-    """Return what was heard in sentences, given as frames and network."""
+    """Count the observations of each density in sentences, given as frames and network."""
     amount = np.zeros(sounds.means.shape[:3])
     total = np.zeros(sounds.means.shape)
     for frames, net in said:
@@ -237,18 +238,18 @@ def count(sounds: Sounds, said: Sequence[Tuple[np.ndarray, Network]]) -> Counts:
 
 
 def transformed(sounds: Sounds, counts: Counts) -> Sounds:
-    """Return the sounds with all means under the affine transformation that fits best (MLLR)."""
+    """Return the sounds with all means under the best-fitting affine transformation (MLLR)."""
     spoken = ~np.isin(sounds.phones, _NOT_SPOKEN)
     means = sounds.means.copy()
     size = means.shape[3]
     for stream in range(means.shape[1]):
         old = sounds.means[spoken, stream].reshape(-1, size)
-        weight = 1.0 / np.maximum(sounds.variances[spoken, stream], _LEAST_VARIANCE)
+        weight = 1.0 / np.maximum(sounds.variances[spoken, stream], _MIN_VARIANCE)
         weight = weight.reshape(-1, size)
         amount = counts.amount[spoken, stream].reshape(-1, 1)
         total = counts.total[spoken, stream].reshape(-1, size)
         one = np.hstack([np.ones((len(old), 1)), old])
-        # A few frames' worth of no change at all: what was hardly heard stays where it is.
+        # A prior with the weight of a few frames for no change: rare sounds stay where they are.
         stay = _REST_FRAMES * np.diag((one ** 2).mean(axis=0))
         moved = np.empty_like(old)
         for row in range(size):
@@ -263,9 +264,9 @@ def transformed(sounds: Sounds, counts: Counts) -> Sounds:
 
 
 def drawn(sounds: Sounds, said: Sequence[Tuple[np.ndarray, Network]]) -> Sounds:
-    """Return the sounds with each mean drawn to what was heard of it (MAP).
+    """Return the sounds with each mean shifted towards its observed mean (MAP).
 
-    What was heard of which is looked at anew each time, and drawn from the same beginning.
+    The frames are assigned again in each iteration; the means start from the same model.
     """
     moved = sounds
     for _ in range(_DRAWN):
@@ -276,9 +277,9 @@ def drawn(sounds: Sounds, said: Sequence[Tuple[np.ndarray, Network]]) -> Sounds:
 
 
 def adapted(sounds: Sounds, said: Sequence[Tuple[np.ndarray, Network]]) -> Sounds:
-    """Return the sounds moved towards the voice that has said sentences.
+    """Return the sounds adapted to the voice in some sentences.
 
-    :param said: :func:`features` and :func:`network` of each
+    :param said: :func:`features` and :func:`network` of each sentence
     """
     for _ in range(_TRANSFORMATIONS):
         sounds = transformed(sounds, count(sounds, said))

@@ -1,22 +1,22 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Telling an operator whose voice is not understood what to do about it."""
+"""Advice for an operator whose commands are not recognised."""
 from collections import deque
 from dataclasses import replace
 from typing import Deque
 
-from mhri.voice.speech import Heard, UNCLEAR
+from mhri.voice.speech import UNCLEAR, Utterance
 
-# So many attempts in a row, none further back than this, make a voice that is not understood.
+# Advice is given after this many failed attempts in a row within this time [s].
 ATTEMPTS = 3
 RECENT_S = 30.0
-# Longer than any command is spoken: that was talk.
-LONGEST_S = 4.0
+# Longer utterances are talk, not commands [s].
+MAX_COMMAND_S = 4.0
 _WORDS = 'not understood {} times: speak slower and close to the microphone, {}'
 
 
 class Attempts:
-    """Counts the attempts to say a command that were not understood."""
+    """Counts the failed attempts to say a command."""
 
     def __init__(self) -> None:
         self._failed: Deque[float] = deque(maxlen=ATTEMPTS)
@@ -25,19 +25,19 @@ class Attempts:
         """Forget the attempts so far."""
         self._failed.clear()
 
-    def judge(self, heard: Heard, lasted_s: float, now: float, held: bool,
-              taught: bool = False) -> Heard:
-        """Return what was heard, its reason being what to do where nothing is understood.
+    def judge(self, heard: Utterance, lasted_s: float, now: float, held: bool,
+              taught: bool = False) -> Utterance:
+        """Return an utterance; after several failures its reason is advice.
 
-        :param lasted_s: how long the utterance was [s]
-        :param now: [s] of a clock that never goes back
-        :param held: push-to-talk was held, which is no advice then
-        :param taught: the voice was taught, which is none either
+        :param lasted_s: duration of the utterance [s]
+        :param now: [s, monotonic]
+        :param held: push-to-talk was held, and is therefore not advised
+        :param taught: the voice was taught, and teaching is therefore not advised
         """
         if heard.reason not in UNCLEAR:
             self.clear()
             return heard
-        if lasted_s > LONGEST_S and not held:
+        if lasted_s > MAX_COMMAND_S and not held:
             return heard
         self._failed.append(now)
         if len(self._failed) < ATTEMPTS or now - self._failed[0] > RECENT_S:

@@ -1,17 +1,17 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""How old sound is that comes in blocks: what a busy computer leaves in a pipe is not new."""
+"""Measures the age of sound read in blocks, which waits in a pipe on a busy computer."""
 from mhri.voice.sound import BLOCK_S
 
 
 class Backlog:
-    """Compares the time that a stream has lasted with a clock.
+    """Compares the duration of a stream with a clock.
 
-    While nothing waits to be read, the newest block has just been spoken; whatever the stream falls
-    behind from there on is the age of its sound. Clocks of sound cards are not exact, so it is
-    measured anew each time that nothing waits.
+    While no sound is waiting, the newest block has just been spoken; from then on the age of the
+    sound is the delay of the stream. Clocks of sound cards are not exact, so the reference is
+    updated each time that nothing waits.
 
-    :param opened_s: when the source was opened [s] of the clock: nothing in it is older
+    :param opened_s: time at which the source was opened [s]: no sound is older
     """
 
     def __init__(self, opened_s: float) -> None:
@@ -19,9 +19,9 @@ class Backlog:
         self._least_s = opened_s
 
     def take(self, now_s: float, waits: bool) -> float:
-        """Take in that a block was read now; return when it was spoken [s].
+        """Handle that a block was read now; return the time at which it was spoken [s].
 
-        :param waits: more of the sound waits to be read
+        :param waits: whether more sound is waiting
         """
         self._lasted_s += BLOCK_S
         behind_s = now_s - self._lasted_s

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Where speech begins and ends in a stream of sound: energy over a floor that follows the noise."""
+"""Detects begin and end of speech in a stream of sound, by its energy over an adaptive floor."""
 from collections import deque
 from typing import Deque, Iterable
 
@@ -10,26 +10,26 @@ from mhri.voice.sound import BLOCK_S
 
 BEGIN, GO_ON, END, QUIET = 'begin', 'go_on', 'end', 'quiet'
 
-# What was heard before speech was noticed: a soft first sound belongs to it.
+# Sound kept from before the detection of speech, for a soft first sound.
 LEAD_S = 0.3
-# A pause inside a sentence is shorter.
+# A longer pause ends an utterance.
 PAUSE_S = 0.4
-# Longer than any command: what goes on is talk, or noise that has begun.
-LONGEST_S = 6.0
+# Longer than any command: talk, or the onset of a noise.
+MAX_UTTERANCE_S = 6.0
 _BEGIN_BLOCKS = 4
 _BEGIN_OF = 6
-# How far over the floor speech is, and how far a word's soft end still is [dB].
+# Levels over the floor for the begin of speech, and for the soft end of a word [dB].
 _OVER_DB = 6.0
 _STILL_DB = 4.0
-# A microphone's own hiss: never below this [dB of one step of 16 bit].
+# The minimum of the floor: a microphone's own hiss [dB of one step of 16 bit].
 _LOWEST_DB = 20.0
-# The floor is a low percentile of so much sound, since a room has pauses and noise has none.
+# The floor is a low percentile of the last sound: speech has pauses, noise has none.
 _FLOOR_S = 3.0
 _FLOOR_PERCENT = 20.0
 
 
 def loudness_db(block: bytes) -> float:
-    """Return how loud a block of 16 bit samples is [dB of one step]; -10.0 for digital silence."""
+    """Return the level of a block of 16 bit samples [dB of one step]; -10.0 for digital silence."""
     samples = np.frombuffer(block, dtype='<i2').astype(np.float32)
     if not samples.size:
         return -10.0
@@ -38,16 +38,16 @@ def loudness_db(block: bytes) -> float:
 
 
 def has_speech(blocks: Iterable[bytes], floor_db: float) -> bool:
-    """Tell whether somebody speaks in some blocks, over a floor as :class:`Endpointer` has it."""
+    """Return whether there is speech in some blocks, over a floor of an :class:`Endpointer`."""
     return sum(loudness_db(block) > floor_db + _OVER_DB for block in blocks) >= _BEGIN_BLOCKS
 
 
 class Endpointer:
-    """Cuts a stream into utterances.
+    """Splits a stream into utterances.
 
-    Feed it blocks in the form of :mod:`mhri.voice.sound`. It answers with what
-    the block means: BEGIN (take :meth:`lead`, which has the block itself), GO_ON, END (the block is
-    no part of it any more) or QUIET.
+    Feed it blocks in the form of :mod:`mhri.voice.sound`. Each block is classified as BEGIN
+    (:meth:`lead` has the sound so far, including the block), GO_ON, END (the block does not belong
+    to the utterance) or QUIET.
     """
 
     def __init__(self) -> None:
@@ -67,20 +67,20 @@ class Endpointer:
 
     @property
     def silent_s(self) -> float:
-        """For how long the open utterance has been silent [s]."""
+        """The duration of the present silence in the open utterance [s]."""
         return self._silent_s
 
     @property
     def floor_db(self) -> float:
-        """What counts as silence [dB of one step of 16 bit]."""
+        """The level of silence [dB of one step of 16 bit]."""
         return self._floor_db
 
     def lead(self) -> bytes:
-        """Return the sound from shortly before the beginning on."""
+        """Return the sound since shortly before the begin of speech."""
         return b''.join(self._lead)
 
     def feed(self, block: bytes) -> str:
-        """Take in one block; return BEGIN, GO_ON, END or QUIET."""
+        """Handle one block; return BEGIN, GO_ON, END or QUIET."""
         level = loudness_db(block)
         self._follow(level)
         self._lead.append(block)
@@ -94,24 +94,24 @@ class Endpointer:
         return BEGIN
 
     def _go_on(self, level: float) -> str:
-        """Judge a block of an open utterance."""
+        """Classify a block of an open utterance."""
         self._spoken_s += BLOCK_S
         self._silent_s = 0.0 if level > self._floor_db + _STILL_DB else self._silent_s + BLOCK_S
-        if self._silent_s < PAUSE_S and self._spoken_s < LONGEST_S:
+        if self._silent_s < PAUSE_S and self._spoken_s < MAX_UTTERANCE_S:
             return GO_ON
         self._speaking = False
         self._loud.clear()
         self._lead.clear()
-        # At once: noise that has begun would begin the next utterance before the floor has risen.
+        # Update the floor at once: otherwise a new noise would begin the next utterance.
         self._until_floor = 0
         return END
 
     def _follow(self, level: float) -> None:
-        """Let the floor follow the noise; five times a second is often enough."""
+        """Update the floor from the noise, five times a second."""
         self._levels.append(level)
         self._until_floor -= 1
         if self._until_floor <= 0:
             self._until_floor = int(0.2 / BLOCK_S)
             floor_db = max(_LOWEST_DB, float(np.percentile(self._levels, _FLOOR_PERCENT)))
-            # A long sentence must not become its own floor; noise that has begun ends by LONGEST_S.
+            # A long sentence must not raise the floor; noise is ended by MAX_UTTERANCE_S.
             self._floor_db = min(floor_db, self._floor_db) if self._speaking else floor_db

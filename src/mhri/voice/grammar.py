@@ -1,9 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The grammar of the robots that are there: what the recogniser looks for, and what it means."""
+"""The grammar for the present robots: the phrases to recognise, and their meanings."""
 from dataclasses import dataclass, replace
 from typing import Any, Callable, Dict, Iterable, Iterator, List, Optional, Tuple
 
+from mhri.voice.accessories import call_accessories, SpokenRow
 from mhri.voice.language import GROUP_ACTIONS, Language, ROBOT_ACTIONS
 from mhri.voice.names import call_robots, number_words, numbered
 
@@ -11,17 +12,20 @@ from mhri.voice.names import call_robots, number_words, numbered
 MAX_NUMBER = 20
 DRIVE, PACE, PANEL, MODE, STOP, WAKE, NOBODY = (
     'drive', 'pace', 'panel', 'mode', 'stop', 'wake', 'nobody')
+# The action of the panel for an accessory.
+ACCESSORY = 'accessory'
 _Words = Tuple[str, ...]
 
 
 @dataclass(frozen=True)
 class Command:
-    """What was said, as a value.
+    """A spoken command as a value.
 
     ``kind`` is DRIVE (``action``: a direction, ``manner``: '' or one of ``MANNERS``), PACE
     (``action``: faster or slower), PANEL (``action`` of ``mhri/PanelRequest``, ``robots``), MODE
-    (``action``: a source), STOP, WAKE (the wake word alone), or NOBODY (``action``: what a robot
-    was meant for by a number that none has). ``woken`` tells whether the wake word came with it.
+    (``action``: a source), STOP, WAKE (the wake word alone), or NOBODY (``action``: the action for
+    an unassigned number). ``woken``: whether it was said with the wake word. ``key`` and ``choice``
+    are those of an accessory.
     """
 
     kind: str
@@ -29,18 +33,27 @@ class Command:
     manner: str = ''
     robots: Tuple[str, ...] = ()
     woken: bool = False
+    key: str = ''
+    choice: str = ''
+
+    @property
+    def acts(self) -> bool:
+        """Whether it moves something, and must not be carried out late."""
+        return self.kind in (DRIVE, PACE) or bool(self.key)
 
     @property
     def words(self) -> str:
         """The command in one line, e.g. 'forward little', 'select bot1 bot2', 'use pedal'."""
         if self.kind in (STOP, WAKE):
             return self.kind
+        if self.key:
+            return ' '.join(filter(None, (self.key, self.choice)))
         first = 'use ' + self.action if self.kind == MODE else self.action
         return ' '.join([first] + [self.manner] * bool(self.manner) + list(self.robots))
 
 
 def _after(words: _Words, phrases: Iterable[str]) -> Iterator[_Words]:
-    """Yield what follows each of the phrases that the words begin with."""
+    """Yield the remaining words after each phrase at their beginning."""
     for phrase in phrases:
         start = tuple(phrase.split())
         if words[:len(start)] == start:
@@ -48,12 +61,12 @@ def _after(words: _Words, phrases: Iterable[str]) -> Iterator[_Words]:
 
 
 def _seldom(text: str) -> str:
-    """Write in JSGF what may be left out, and mostly is: it must not stand for another word."""
+    """Return a rarely used part in JSGF, with a low weight so that it matches no other word."""
     return '(/0.9/ <NULL> | /0.1/ {})'.format(text)
 
 
 def _any_of(phrases: Iterable[str]) -> str:
-    """Write alternatives in JSGF."""
+    """Return alternatives in JSGF."""
     return '(' + ' | '.join(sorted(set(phrases))) + ')'
 
 
@@ -61,23 +74,31 @@ class Grammar:
     """The phrases of a language with the robots of the panel's list.
 
     :param language: :class:`mhri.voice.language.Language`
-    :param robots: names, each in the place of its number, from 1; '' if nobody has it
-    :param knows: function that tells whether the model's dictionary has a word
+    :param robots: names in the order of their numbers, from 1; '' for an unused number
+    :param knows: function that returns whether the model's dictionary has a word
+    :param accessories: of the robots, each a :class:`SpokenRow` or a list of its values
     """
 
-    def __init__(self, language: Language, robots: Iterable[Any],
-                 knows: Callable[[str], bool]) -> None:
+    def __init__(self, language: Language, robots: Iterable[Any], knows: Callable[[str], bool],
+                 accessories: Iterable[Iterable[Any]] = ()) -> None:
         self.language = language
         self._fixed = self._fixed_phrases()
-        taken = {word for phrase in self._fixed for word in phrase.split()}
-        taken |= {word for phrase in language.joiners + language.numbers + language.please
-                  for word in phrase.split()}
-        # "robot one" may be a robot's name and a robot's number; then it is the name.
-        taken -= set(language.numbers) & set(language.wake_words) - set(language.stop)
+        #: the words that no name and no accessory may have
+        self.taken = frozenset(
+            word for phrase in self._fixed + language.joiners + language.numbers + language.please
+            for word in phrase.split())
         self.robots = tuple(robots)
-        self.called, self.notes = call_robots(
-            self.robots, lambda word: word in language.pronunciations or knows(word), taken,
+        self.accessories = tuple(SpokenRow(*row) for row in accessories)
+
+        def has(word: str) -> bool:
+            return word in language.pronunciations or knows(word)
+        # "robot one" may be both the name of a robot and a number; then the name takes precedence.
+        self.called, notes = call_robots(
+            self.robots, has, self.taken - (
+                set(language.numbers) & set(language.wake_words) - set(language.stop)),
             language.wake_words)
+        self._acts, more = call_accessories(self.accessories, has, self.taken)
+        self.notes = notes + more
         self._robots: Dict[str, str] = {}
         for name, number in numbered(self.robots).items():
             for prefix in ('',) + language.numbers:
@@ -101,15 +122,16 @@ class Grammar:
 
     @property
     def words(self) -> List[str]:
-        """Every word of the grammar, sorted: what the recogniser's dictionary has to hold."""
+        """All words of the grammar, sorted, for the recogniser's dictionary."""
         language = self.language
-        phrases = (self._fixed + tuple(self._robots) + tuple(self._nobody) + language.joiners
+        phrases = (self._fixed + tuple(self._robots) + tuple(self._nobody) + tuple(self._acts)
+                   + language.joiners
                    + language.please
                    + language.stop_before + language.stop_after)
         return sorted({word for phrase in phrases for word in phrase.split()})
 
     def moves(self, text: str) -> bool:
-        """Tell whether words mean a motion."""
+        """Return whether words are a command of motion."""
         command = self.parse(text)
         return command is not None and command.kind in (DRIVE, PACE)
 
@@ -129,12 +151,13 @@ class Grammar:
     def jsgf(self, motion: bool = True) -> str:
         """Return the grammar in the JSpeech Grammar Format; its public rule is ``said``.
 
-        :param motion: False: without what moves a robot
+        :param motion: whether to include motions
         """
         drives = self._drives() if motion else []
         language = self.language
         others = [phrase for action in GROUP_ACTIONS for phrase in language.robots[action]]
         others += [phrase for phrases in language.requests.values() for phrase in phrases]
+        others += sorted(self._acts)
         if language.sources:
             others.append('{} {}'.format(_any_of(language.use), _any_of(
                 phrase for phrases in language.sources.values() for phrase in phrases)))
@@ -158,10 +181,10 @@ class Grammar:
         return '\n'.join(rules) + '\n'
 
     def parse(self, text: str) -> Optional[Command]:
-        """Return the :class:`Command` that words mean, or None if they mean none.
+        """Return the :class:`Command` for words, or None.
 
-        A word of ``stop`` anywhere stops, but for the phrases of the grammar that have it inside
-        ("stop recording") and begin with the wake word or stand alone.
+        A word of ``stop`` anywhere is a stop, except in phrases of the grammar that contain it
+        ("stop recording"), alone or after the wake word.
         """
         words = tuple(text.split())
         command = self._parse_whole(words)
@@ -170,7 +193,7 @@ class Grammar:
         return command
 
     def _parse_whole(self, words: _Words) -> Optional[Command]:
-        """Parse without the spotting of stop."""
+        """Parse the words without searching for a stop."""
         for rest in _after(words, self.language.wake_words):
             if not rest:
                 return Command(WAKE, woken=True)
@@ -180,7 +203,7 @@ class Grammar:
         return self._parse_command(words, False)
 
     def _parse_command(self, words: _Words, woken: bool) -> Optional[Command]:
-        """Parse what follows the wake word."""
+        """Parse the words after the wake word."""
         for start in list(_after(words, self.language.please)) + [words]:
             for phrase in (None,) + self.language.please:
                 size = len(phrase.split()) if phrase else 0
@@ -211,9 +234,12 @@ class Grammar:
         return None
 
     def _request(self, words: _Words) -> Optional[Command]:
-        """Return the command of what is not a motion, or None."""
+        """Return the command if it is not a motion, or None."""
         language = self.language
         text = ' '.join(words)
+        if text in self._acts:
+            key, choice = self._acts[text]
+            return Command(PANEL, ACCESSORY, key=key, choice=choice)
         for kind, table in ((PANEL, language.requests),
                             (PANEL, {key: language.robots[key] for key in GROUP_ACTIONS})):
             for action, phrases in table.items():
@@ -226,7 +252,7 @@ class Grammar:
         return self._of_robots(words)
 
     def _of_robots(self, words: _Words) -> Optional[Command]:
-        """Return what robots are chosen for by name or number, or None."""
+        """Return the command on robots by name or number, or None."""
         for action in ROBOT_ACTIONS:
             for rest in _after(words, self.language.robots[action]):
                 robots = self._named(rest)
@@ -237,7 +263,7 @@ class Grammar:
         return None
 
     def _named(self, words: _Words) -> Tuple[str, ...]:
-        """Return the robots that words name, one or two of them, or ()."""
+        """Return the one or two robots that words name, or ()."""
         text = ' '.join(words)
         if text in self._robots:
             return (self._robots[text],)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What can be said, as data: ``resource/voice/<language>.yaml``, checked."""
+"""Reads and checks the phrases of a language, ``resource/voice/<language>.yaml``."""
 import re
 from dataclasses import dataclass
 from typing import Dict, Iterable, Optional, Pattern, Tuple
@@ -12,18 +12,18 @@ MANNERS = ('little', 'faster', 'slower')
 ROBOT_ACTIONS = ('select', 'deselect', 'only')
 GROUP_ACTIONS = ('select_all', 'select_none')
 REQUESTS = ('record', 'stop_recording', 'mark')
-# The most that one motion command may last: a person who is not heard again stops the robots.
-LONGEST_S = 2.0
+# Longest duration of one motion command: robots stop unless it is repeated [s].
+MAX_MOTION_S = 2.0
 _WORD_OR_PHRASE = re.compile(r"[a-z']+( [a-z']+)*\Z")
 _SOUNDS = re.compile(r'[A-Z]+( [A-Z]+)*\Z')
 
 
 @dataclass(frozen=True)
 class Motion:
-    """How fast and how long a spoken command drives.
+    """The speeds and durations of spoken commands.
 
-    ``fraction`` is what a drive begins with, ``step`` what "faster" and "slower" change it by,
-    between ``lowest`` and ``highest``: all fractions of the operator's speed limit. A command lasts
+    ``fraction`` is the initial speed, ``step`` the change by "faster" and "slower", between
+    ``lowest`` and ``highest``: all fractions of the operator's speed limit. A command lasts
     ``lasts_s``, one with "a little" ``little_s``.
     """
 
@@ -39,12 +39,11 @@ class Motion:
 class Language:
     """The phrases of one language, in lower case, words separated by one space.
 
-    ``stop`` are single words; around them may stand a phrase of ``stop_before`` and ``stop_after``.
+    ``stop`` are single words, optionally between phrases of ``stop_before`` and ``stop_after``.
     ``drive`` maps a direction to (verbs, words), ``manner`` a manner to its phrases, ``robots`` an
-    action on robots to its phrases, ``requests`` a wish to the panel, ``sources`` a source of
-    ``mux.yaml``. ``pronunciations`` maps a word to the sounds it is spoken with (CMU phones).
-    ``teach`` is what an operator reads so that the voice is known, ``teach_check`` what shows
-    whether it is.
+    action on robots, ``requests`` a request to the panel, ``sources`` a source of ``mux.yaml``.
+    ``pronunciations`` maps a word to its pronunciations (CMU phones). ``teach`` are the sentences
+    to learn a voice from, ``teach_check`` those to check it with.
     """
 
     name: str
@@ -101,7 +100,7 @@ def parse_language(text: str, origin: str) -> Language:
 
 def _phrases(section: Section, key: str,
              default: Optional[Tuple[str, ...]] = None) -> Tuple[str, ...]:
-    """Read a list of phrases; at least one where there is no default."""
+    """Read a list of phrases; at least one is required without a default."""
     phrases = section.texts(key) if default is None else section.texts(key, default)
     if default is None and not phrases:
         raise section.error(key, 'name at least one phrase')
@@ -153,8 +152,8 @@ def _motion(section: Section) -> Motion:
     motion = Motion(
         fraction=section.number('fraction', 0.01, 1.0), step=section.number('step', 0.01, 1.0),
         lowest=section.number('lowest', 0.01, 1.0), highest=section.number('highest', 0.01, 1.0),
-        lasts_s=section.number('lasts_s', 0.1, LONGEST_S),
-        little_s=section.number('little_s', 0.1, LONGEST_S))
+        lasts_s=section.number('lasts_s', 0.1, MAX_MOTION_S),
+        little_s=section.number('little_s', 0.1, MAX_MOTION_S))
     if not motion.lowest <= motion.fraction <= motion.highest:
         raise section.error('fraction', 'must lie between lowest and highest')
     section.close()
@@ -162,7 +161,7 @@ def _motion(section: Section) -> Motion:
 
 
 def _listening(section: Section) -> Dict[str, float]:
-    """Read how long a wake word and a push-to-talk count."""
+    """Read the durations of wake word and push-to-talk."""
     times = {'wake_window_s': section.number('wake_window_s', 0.0, 10.0),
              'push_to_talk_s': section.number('push_to_talk_s', 1.0, 60.0)}
     section.close()

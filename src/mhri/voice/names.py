@@ -1,29 +1,29 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""How robots are called: by a name that can be spoken, and by their number in the panel."""
+"""The spoken names of robots: by their name if possible, and by their number in the panel."""
 import re
 from typing import Any, Callable, Container, Dict, Iterable, List, Mapping, Optional, Tuple
 
 from mhri.base.names import name_problem
 
-# More robots than this are not told apart by voice, and no higher number is spoken.
-MOST_ROBOTS = 30
+# Maximum number of robots, and the highest number, that can be addressed by voice.
+MAX_ROBOTS = 30
 _LAST_NUMBER = 99
-# A word that the dictionary does not have is spelled, up to this length: "tb" is "t b".
+# A word that is not in the dictionary is spelled up to this length: "tb" is "t b".
 _SPELLED = 4
 _VOWELS = frozenset('aeiouy')
 _ONES = ('zero one two three four five six seven eight nine ten eleven twelve thirteen fourteen '
          'fifteen sixteen seventeen eighteen nineteen').split()
 _TENS = 'twenty thirty forty fifty sixty seventy eighty ninety'.split()
-# Tells whether the dictionary has a word.
+# A function that returns whether the dictionary has a word.
 _Knows = Callable[[str], bool]
 _PARTS = re.compile(r'[A-Z]+(?![a-z])|[A-Z]?[a-z]+|[0-9]+')
 
 
 def number_words(number: int) -> str:
-    """Return how a whole number from 0 to 99 is spoken, e.g. 'twenty one'.
+    """Return the words for a whole number from 0 to 99, e.g. 'twenty one'.
 
-    :raises ValueError: it is outside
+    :raises ValueError: the number is out of range
     """
     if not 0 <= number <= 99:
         raise ValueError('numbers from 0 to 99 are spoken, not {}'.format(number))
@@ -34,7 +34,7 @@ def number_words(number: int) -> str:
 
 
 def _split(letters: str, knows: _Knows) -> Optional[List[str]]:
-    """Return dictionary words that make up a text, as few and as even as can be, or None."""
+    """Return a text split into dictionary words, as few and as even as possible, or None."""
     if knows(letters):
         return [letters]
     cuts = [(letters[:at], letters[at:]) for at in range(3, len(letters) - 2)]
@@ -46,16 +46,16 @@ def _split(letters: str, knows: _Knows) -> Optional[List[str]]:
 
 
 def _word_or_letters(part: str, knows: _Knows) -> Optional[List[str]]:
-    """Return the words or letters that one part of a name is spoken as, or None."""
+    """Return the spoken words or letters of one part of a name, or None."""
     spelled = list(part) if len(part) <= _SPELLED and all(map(knows, part)) else None
     if spelled and not _VOWELS.intersection(part):
-        # The dictionary has "tb" and the like, but nobody says them as a word.
+        # The dictionary has "tb" and the like, but they are not spoken as words.
         return spelled
     return _split(part, knows) or spelled
 
 
 def _digits(text: str) -> List[str]:
-    """Return the ways in which digits are spoken, the usual one first."""
+    """Return the spoken forms of digits, the usual one first."""
     one_by_one = ' '.join(_ONES[int(digit)] for digit in text)
     if len(text) > 2 or text[0] == '0':
         return [one_by_one]
@@ -64,12 +64,12 @@ def _digits(text: str) -> List[str]:
 
 
 def spoken_names(name: str, knows: _Knows) -> Tuple[str, ...]:
-    """Return the phrases that one robot's name is spoken as; () where it cannot be.
+    """Return the spoken phrases of a robot's name, () if it cannot be spoken.
 
     Words of the dictionary stay words (``bot1``: "bot one", ``turtlebot_2``: "turtle bot two"),
-    short ones that are not in it are spelled (``tb3``: "t b three").
+    other short ones are spelled (``tb3``: "t b three").
 
-    :param knows: function that tells whether the dictionary has a word
+    :param knows: function that returns whether the dictionary has a word
     """
     ways: List[List[str]] = [[]]
     for part in _PARTS.findall(name):
@@ -83,11 +83,11 @@ def spoken_names(name: str, knows: _Knows) -> Tuple[str, ...]:
 
 
 def in_places(names: Iterable[str], numbers: Any) -> Tuple[str, ...]:
-    """Return names so that the place of each, from 1, is its number; '' if nobody there has it.
+    """Return names in the order of their numbers, from 1; '' for an unused number.
 
-    One whose number is not known, or cannot be spoken, is left out.
+    A name without a number, or with an unspeakable one, is left out.
 
-    :param numbers: {name: number}, as anybody may have set it; where there is none, places are
+    :param numbers: {name: number}, unchecked; if empty, the order of the names is used
     """
     if not isinstance(numbers, dict) or not numbers:
         return tuple(names)[:_LAST_NUMBER]
@@ -97,7 +97,7 @@ def in_places(names: Iterable[str], numbers: Any) -> Tuple[str, ...]:
 
 
 def numbered(robots: Iterable[Any]) -> Dict[str, int]:
-    """Return the first robots of a list as :func:`in_places` makes it: {name: number}."""
+    """Return {name: number} of the first robots of a list from :func:`in_places`."""
     found: Dict[str, int] = {}
     number = 0
     for name in robots:
@@ -106,19 +106,19 @@ def numbered(robots: Iterable[Any]) -> Dict[str, int]:
         elif isinstance(name, str) and not name_problem(name) and name not in found:
             number += 1
             found[name] = number
-            if len(found) == MOST_ROBOTS:
+            if len(found) == MAX_ROBOTS:
                 break
     return found
 
 
 def call_robots(robots: Iterable[Any], knows: _Knows, taken: Container[str],
                 wake_words: Container[str] = ()) -> Tuple[Dict[str, Tuple[str, ...]], List[str]]:
-    """Return how the robots of the panel's list can be called.
+    """Return the spoken names of the robots in the panel's list.
 
-    :param robots: names, each in the place of its number; what is no robot's name is left out
-    :param taken: words that mean something else: a name with one of them goes by its number alone
-    :param wake_words: a name may have these in it ("robot one"), but not be one
-    :returns: ({name: phrases}, [sentence about a robot that goes by its number alone])
+    :param robots: names in the order of their numbers; invalid ones are left out
+    :param taken: words with another meaning: a robot whose name has one is called by number only
+    :param wake_words: a name may contain these ("robot one"), but not be one
+    :returns: ({name: phrases}, [sentence about a robot called by number only])
     """
     called: Dict[str, Tuple[str, ...]] = {}
     notes: List[str] = []
@@ -134,7 +134,7 @@ def call_robots(robots: Iterable[Any], knows: _Knows, taken: Container[str],
 
 def _problem(name: str, phrases: Mapping[str, Tuple[str, ...]], taken: Container[str],
              wake_words: Container[str]) -> Optional[str]:
-    """Say why a robot's name cannot be used, or return None."""
+    """Return why a robot's name cannot be used, None if it can."""
     own = phrases[name]
     if not own:
         return 'has no words that can be spoken'

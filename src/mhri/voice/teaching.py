@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Whether a sentence that an operator has read aloud is good enough to learn from."""
+"""Judges whether a sentence read by an operator is good enough to learn from."""
 import re
 from typing import Mapping
 
@@ -10,15 +10,16 @@ from mhri.recording.recording import ros_home
 from mhri.voice.endpointing import loudness_db
 from mhri.voice.sound import BLOCK_BYTES, BLOCK_S
 
-# Samples this large are cut off by the microphone, where more than so many of all are [fraction].
+# Samples this large are clipped; a sound with a larger share of them is too loud [fraction].
 _CLIPPED = 32600
 _CLIPPED_SHARE = 1e-3
-# The loudest tenth of a sentence [dB of one step of 16 bit], and that over its quietest [dB].
+# Minimum level of the loudest tenth of a sentence [dB of one step of 16 bit], and its minimum level
+# over the quietest part [dB].
 _LOUD_DB = 45.0
 _OVER_DB = 15.0
-# How long one sound of a language lasts in the mean, at least and at most [s].
-_SHORTEST_S, _LONGEST_S = 0.035, 0.30
-# What an utterance has of the room before and behind it [s].
+# Minimum and maximum mean duration of a sound of the language [s].
+_MIN_SOUND_S, _MAX_SOUND_S = 0.035, 0.30
+# Silence before and after the speech in an utterance [s].
 _ROOM_S = 0.7
 _NAME = re.compile(r'[A-Za-z0-9_-]{1,40}\Z')
 
@@ -27,7 +28,7 @@ def sentence_problem(sound: bytes, sounds: int) -> str:
     """Return why a recorded sentence has to be read again, and how; '' if it is good.
 
     :param sound: as in :mod:`mhri.voice.sound`
-    :param sounds: how many sounds of the language the sentence has
+    :param sounds: number of sounds of the language in the sentence
     """
     samples = np.abs(np.frombuffer(sound, dtype='<i2').astype(np.int32))
     levels = [loudness_db(sound[at:at + BLOCK_BYTES]) for at in range(0, len(sound), BLOCK_BYTES)]
@@ -41,20 +42,20 @@ def sentence_problem(sound: bytes, sounds: int) -> str:
     if loud_db - room_db < _OVER_DB:
         return 'too much noise around: come closer to the microphone, or go where it is quiet'
     length_s = len(levels) * BLOCK_S - _ROOM_S
-    if length_s < sounds * _SHORTEST_S:
+    if length_s < sounds * _MIN_SOUND_S:
         return 'too short: read the whole sentence, at an even pace'
-    if length_s > sounds * _LONGEST_S:
+    if length_s > sounds * _MAX_SOUND_S:
         return 'too long: read the sentence alone, without long pauses'
     return ''
 
 
 def voice_path(name: str, env: Mapping[str, str]) -> str:
-    """Return where the voice of that name is kept: ``$ROS_HOME/mhri/voices/<name>.means``."""
+    """Return the path of a voice's file: ``$ROS_HOME/mhri/voices/<name>.means``."""
     return '{}/mhri/voices/{}.means'.format(ros_home(env), name)
 
 
 def voice_problem(name: str) -> str:
-    """Return why a voice cannot have a name, '' if it can."""
+    """Return why a name is not allowed for a voice, '' if it is."""
     if _NAME.match(name):
         return ''
     return 'expected a name of letters, digits, "_" and "-", 40 at most, got {!r}'.format(name[:60])

@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Whose robot a series of quick clicks is for: the one under the first of them.
+"""The target robot of a series of quick clicks: the one under the first click.
 
-The first click may rearrange what is on the screen, so that the second lands on another robot. All
-tiles and rows share the one memory here, as they share the pointer.
+The first click may rearrange the screen, so that the second lands on another robot. All tiles and
+rows share one memory here, as they share the pointer.
 """
 from python_qt_binding.QtCore import QPoint
 from python_qt_binding.QtWidgets import QApplication
@@ -14,10 +14,10 @@ _NEAR_PX = 5
 
 
 class FirstPress:
-    """Remembers the robot that had the first press of a series at one place.
+    """Stores the robot that received the first press of a series at one position.
 
-    Qt calls a press the second of a double click if it follows the first at once and at the same
-    place of the window, whatever is there by then.
+    Qt treats a press as the second of a double click if it quickly follows the first at the same
+    position of the window, whichever widget is there by then.
     """
 
     def __init__(self):
@@ -26,9 +26,9 @@ class FirstPress:
         self._place = QPoint()
 
     def of(self, name, event):
-        """Return the robot that a press is for: its own, or that of the press before it.
+        """Return the target robot of a press: its own, or that of the previous press.
 
-        :param name: the robot that is under the pointer now, '' for none
+        :param name: the robot under the pointer now, '' for none
         :param event: the ``QMouseEvent``
         """
         if not self._goes_on(event):
@@ -37,11 +37,11 @@ class FirstPress:
         return self._name
 
     def of_double_click(self, event):
-        """Return the robot that a double click is for; '' where its first press was on none."""
+        """Return the target robot of a double click, '' if its first press was on none."""
         return self.of(_NOBODY, event)
 
     def _goes_on(self, event):
-        """Tell whether a press follows the one before at once, and at the same place."""
+        """Return whether a press quickly follows the previous one at the same position."""
         moved = event.globalPos() - self._place
         return 0 <= event.timestamp() - self._at_ms <= QApplication.doubleClickInterval() and \
             max(abs(moved.x()), abs(moved.y())) <= _NEAR_PX

@@ -1,62 +1,62 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A layout that goes on in the next line where a line is full, as words do."""
+"""A layout that wraps its widgets into lines, like text."""
 from python_qt_binding.QtCore import QRect, QSize, Qt
 from python_qt_binding.QtWidgets import QLayout, QSizePolicy
 
 
 class FlowLayout(QLayout):
-    """Widgets beside each other, on as many lines as they need.
+    """Widgets side by side, on as many lines as needed.
 
-    Those that like to be wide share what a line has left; none is wider than the whole.
+    Expanding widgets share the remaining width of a line; none is wider than the layout.
 
-    :param gap: between two widgets of a line [px]
-    :param line_gap: between two lines [px]
+    :param gap: space between two widgets of a line [px]
+    :param line_gap: space between two lines [px]
     """
 
-    def __init__(self, parent=None, gap=8, line_gap=2):
+    def __init__(self, parent=None, gap=8, line_gap=4):
         super().__init__(parent)
         self._gap, self._line_gap = gap, line_gap
         self._items = []
         self.setContentsMargins(0, 0, 0, 0)
 
     def addItem(self, item):  # noqa: N802
-        """Take an item in at the end."""
+        """Append an item."""
         self._items.append(item)
 
     def count(self):
-        """Return how many items there are, those that are hidden among them."""
+        """Return the number of items, including hidden ones."""
         return len(self._items)
 
     def itemAt(self, index):  # noqa: N802
-        """Return an item, None where there is none."""
+        """Return an item, None if the index is out of range."""
         return self._items[index] if 0 <= index < len(self._items) else None
 
     def takeAt(self, index):  # noqa: N802
-        """Give an item away and return it, None where there is none."""
+        """Remove and return an item, None if the index is out of range."""
         return self._items.pop(index) if 0 <= index < len(self._items) else None
 
     def expandingDirections(self):  # noqa: N802
-        """Return the directions in which more room is of use: none."""
+        """Return no directions: the layout does not use extra space."""
         return Qt.Orientations()
 
     def hasHeightForWidth(self):  # noqa: N802
-        """Tell that the height follows from the width."""
+        """Return True: the height depends on the width."""
         return True
 
     def heightForWidth(self, width):  # noqa: N802
-        """Return the height [px] that all lines need at a width [px]."""
+        """Return the height of all lines [px] at a width [px]."""
         lines = self._lines(width)
         return sum(height for _, height in lines) + self._line_gap * max(0, len(lines) - 1)
 
     def sizeHint(self):  # noqa: N802
-        """Return the size of all in one line."""
+        """Return the size of all items in one line."""
         hints = [item.sizeHint() for item in self._seen()]
         return QSize(sum(hint.width() for hint in hints) + self._gap * max(0, len(hints) - 1),
                      max([hint.height() for hint in hints], default=0))
 
     def minimumSize(self):  # noqa: N802
-        """Return room for the widest and for the highest."""
+        """Return the size that fits the widest and the highest item."""
         least = [item.minimumSize() for item in self._seen()]
         return QSize(max([size.width() for size in least], default=0),
                      max([size.height() for size in least], default=0))
@@ -82,7 +82,7 @@ class FlowLayout(QLayout):
 
     @staticmethod
     def _width_of(item, width):
-        """Return how wide an item would be in lines of this width [px]."""
+        """Return the width of an item in lines of a width [px]."""
         return min(item.sizeHint().width(), width)
 
     def _lines(self, width):
@@ -102,7 +102,7 @@ class FlowLayout(QLayout):
 
 
 def let_height_follow(widget):
-    """Have a widget with such a layout be as high as its width asks for."""
+    """Make the height of a widget with such a layout follow its width."""
     policy = QSizePolicy(QSizePolicy.Preferred, QSizePolicy.Preferred)
     policy.setHeightForWidth(True)
     widget.setSizePolicy(policy)

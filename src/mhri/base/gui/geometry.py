@@ -1,23 +1,23 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Where a window is, as plain numbers: [x, y, width, height, maximised], in pixels."""
+"""The geometry of a window as plain numbers: [x, y, width, height, maximised], in pixels."""
 from python_qt_binding.QtCore import QRect, Qt
 from python_qt_binding.QtGui import QGuiApplication
 
 
-# Of the smallest monitor a window may demand so much: its frame has to fit as well.
+# Maximum share of the smallest monitor for a window: its frame has to fit as well.
 _DEMANDED = 0.9
 
 
 def fitting(size):
-    """Return a :class:`QSize`, made small enough for every monitor, with the window's frame."""
+    """Return a :class:`QSize` reduced to fit every monitor, including the window's frame."""
     for screen in QGuiApplication.screens():
         size = size.boundedTo(screen.availableGeometry().size() * _DEMANDED)
     return size
 
 
 def geometry_of(window):
-    """Return the geometry of a window, while it is maximised that from before."""
+    """Return the geometry of a window; if it is maximised, the one before that."""
     maximised = window.isMaximized()
     usual = window.normalGeometry()
     rect = usual if maximised and usual.isValid() else window.geometry()
@@ -25,11 +25,11 @@ def geometry_of(window):
 
 
 def restore_geometry(window, geometry):
-    """Put a window where it was; return False where no screen is there any more.
+    """Restore the position of a window; return False if its screen no longer exists.
 
-    It is made small enough for the screen, and moved into it.
+    The window is reduced to fit the screen, and moved into it.
 
-    :param geometry: of :func:`geometry_of`, checked by
+    :param geometry: result of :func:`geometry_of`, checked by
         :func:`mhri.screen.saved_state.read_geometry`
     """
     *numbers, maximised = geometry
@@ -48,16 +48,16 @@ def restore_geometry(window, geometry):
 
 
 def in_sight(geometry):
-    """Tell whether the middle of a window is on a screen that is there.
+    """Return whether the centre of a window is on an existing screen.
 
-    :param geometry: of :func:`geometry_of`
+    :param geometry: result of :func:`geometry_of`
     """
     middle = QRect(*geometry[:4]).center()
     return any(screen.geometry().contains(middle) for screen in QGuiApplication.screens())
 
 
 def place_on_another_screen(window, main):
-    """Put a new window on a screen where another one is not; leave it where there is none.
+    """Move a new window to a screen without the main window, if there is one.
 
     :param main: the other window
     """
@@ -71,6 +71,6 @@ def place_on_another_screen(window, main):
 
 
 def _shared(area, rect):
-    """Return how many pixels two rectangles have in common."""
+    """Return the area of the intersection of two rectangles [px]."""
     common = area.intersected(rect)
     return common.width() * common.height() if common.isValid() else 0

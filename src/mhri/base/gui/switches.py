@@ -1,71 +1,65 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Check boxes and radio buttons for fingers, with a mark that is seen on every desktop."""
+"""Check boxes and radio buttons for touch, with a mark that is visible on every desktop."""
 from python_qt_binding.QtCore import QRectF, QSize, Qt
-from python_qt_binding.QtGui import QPainter, QPalette, QPen
-from python_qt_binding.QtWidgets import QCheckBox, QRadioButton, QSizePolicy
+from python_qt_binding.QtGui import QPalette, QPen
+from python_qt_binding.QtWidgets import QButtonGroup, QCheckBox, QRadioButton, QSizePolicy
 
 from mhri.base.gui import theme
+from mhri.base.gui.arrows import keep_arrows
 
 
-def _prepare(button):
-    """Set what both kinds have in common; a click does not take the keyboard from what drives."""
-    button.setFocusPolicy(Qt.TabFocus)
-    button.setSizePolicy(QSizePolicy.Fixed, QSizePolicy.Fixed)
+class _Switch:
+    """Base of both kinds; a click does not take the focus from the driving widget."""
 
-
-def _size(button):
-    """Return the room for mark and words, high enough for a finger."""
-    metrics = button.fontMetrics()
-    return QSize(metrics.horizontalAdvance(button.text()) + round(2.1 * metrics.height()),
-                 theme.touch_size(button))
-
-
-def _paint(button, paint_mark):
-    """Paint the words beside a mark: ``paint_mark(painter, box, ink)``."""
-    painter = QPainter(button)
-    painter.setRenderHint(QPainter.Antialiasing)
-    palette, unit = button.palette(), button.fontMetrics().height()
-    side = 1.25 * unit
-    box = QRectF(2.0, (button.height() - side) / 2.0, side, side)
-    enabled = button.isEnabled()
-    ink = theme.colour(theme.DRIVE if enabled else theme.MUTED, palette)
-    lively = enabled and (button.isChecked() or button.underMouse())
-    painter.setPen(QPen(ink if lively else theme.colour(theme.MUTED, palette), 2))
-    painter.setBrush(palette.color(QPalette.Base))
-    paint_mark(painter, box, ink)
-    painter.setPen(theme.colour(theme.TEXT if enabled else theme.MUTED, palette))
-    words = button.rect().adjusted(round(1.75 * unit), 0, 0, 0)
-    painter.drawText(words, int(Qt.AlignLeft | Qt.AlignVCenter), button.text())
-    if button.hasFocus():
-        painter.setPen(QPen(palette.color(QPalette.WindowText), 1, Qt.DotLine))
-        painter.setBrush(Qt.NoBrush)
-        painter.drawRect(button.rect().adjusted(0, 0, -1, -1))
-
-
-class SwitchBox(QCheckBox):
-    """A check box with words; all of it is the target."""
+    # Size of the mark, in heights of a line.
+    _MARK_UNITS = 1.25
 
     def __init__(self, text='', parent=None):
         super().__init__(text, parent)
-        _prepare(self)
+        self.setFocusPolicy(Qt.TabFocus)
+        self.setSizePolicy(QSizePolicy.Fixed, QSizePolicy.Fixed)
 
     def sizeHint(self):  # noqa: N802
-        """Return the room for box and words."""
-        return _size(self)
+        """Return the size of mark and text, high enough for touch."""
+        metrics = self.fontMetrics()
+        return QSize(metrics.horizontalAdvance(self.text()) + round(2.1 * metrics.height()),
+                     theme.touch_size(self))
 
-    minimumSizeHint = sizeHint
+    def minimumSizeHint(self):  # noqa: N802
+        """Return the size hint."""
+        return self.sizeHint()
 
     def hitButton(self, pos):  # noqa: N802
-        """Tell whether a place is on the box: everywhere is."""
+        """Return whether a point is on the widget: all of it is the target."""
         return self.rect().contains(pos)
 
     def paintEvent(self, event):  # noqa: N802
-        """Paint box, tick and words."""
-        _paint(self, self._paint_mark)
+        """Paint the mark and the text; without a text, the mark is in the centre."""
+        painter = theme.smooth_painter(self)
+        palette, unit = self.palette(), self.fontMetrics().height()
+        side = self._MARK_UNITS * unit
+        box = QRectF(2.0 if self.text() else (self.width() - side) / 2.0,
+                     (self.height() - side) / 2.0, side, side)
+        enabled = self.isEnabled()
+        ink = theme.colour(theme.DRIVE if enabled else theme.MUTED, palette)
+        lively = enabled and (self.isChecked() or self.underMouse())
+        painter.setPen(QPen(ink if lively else theme.colour(theme.MUTED, palette), 2))
+        painter.setBrush(palette.color(QPalette.Base))
+        self._paint_mark(painter, box, ink)
+        painter.setPen(theme.colour(theme.TEXT if enabled else theme.MUTED, palette))
+        words = self.rect().adjusted(round(1.75 * unit), 0, 0, 0)
+        painter.drawText(words, int(Qt.AlignLeft | Qt.AlignVCenter), self.text())
+        if self.hasFocus():
+            theme.set_ink(painter, QPen(palette.color(QPalette.WindowText), 1, Qt.DotLine))
+            painter.drawRect(self.rect().adjusted(0, 0, -1, -1))
+
+
+class SwitchBox(_Switch, QCheckBox):
+    """A check box with a text; all of it is the target."""
 
     def _paint_mark(self, painter, box, ink):
-        """Paint the box."""
+        """Paint box and tick."""
         if self.isChecked():
             painter.setBrush(ink)
         painter.drawRoundedRect(box, 4, 4)
@@ -74,32 +68,44 @@ class SwitchBox(QCheckBox):
                              theme.readable_on(ink), ink)
 
 
-class SwitchRadio(QRadioButton):
-    """A radio button with words; all of it is the target."""
+class SquareBox(SwitchBox):
+    """A square check box without a text, large enough for touch."""
 
-    def __init__(self, text='', parent=None):
-        super().__init__(text, parent)
-        _prepare(self)
+    _MARK_UNITS = 1.35
 
     def sizeHint(self):  # noqa: N802
-        """Return the room for mark and words."""
-        return _size(self)
+        """Return the smallest square for touch."""
+        side = theme.touch_size(self)
+        return QSize(side, side)
 
-    minimumSizeHint = sizeHint
 
-    def hitButton(self, pos):  # noqa: N802
-        """Tell whether a place is on the button: everywhere is."""
-        return self.rect().contains(pos)
-
-    def paintEvent(self, event):  # noqa: N802
-        """Paint ring, dot and words."""
-        _paint(self, self._paint_mark)
+class SwitchRadio(_Switch, QRadioButton):
+    """A radio button with a text; all of it is the target."""
 
     def _paint_mark(self, painter, box, ink):
-        """Paint the ring."""
+        """Paint ring and dot."""
         painter.drawEllipse(box)
         if self.isChecked():
-            painter.setPen(Qt.NoPen)
-            painter.setBrush(ink)
+            theme.set_ink(painter, brush=ink)
             inset = 0.25 * box.width()
             painter.drawEllipse(box.adjusted(inset, inset, -inset, -inset))
+
+
+def radio_group(parent, layout, prefix, spoken, texts):
+    """Create and place a group of exclusive radio buttons; return them by key.
+
+    While one has the focus the arrow keys choose; a click does not move the focus there.
+
+    :param prefix: prefix of their object names, before the key
+    :param spoken: prefix of their accessible names, before the text
+    :param texts: {key: text}
+    """
+    group, buttons = QButtonGroup(parent), {}
+    for key, text in texts.items():
+        button = buttons[key] = SwitchRadio(text, parent)
+        button.setObjectName(prefix + key)
+        button.setAccessibleName(spoken + text)
+        keep_arrows(button)
+        group.addButton(button)
+        layout.addWidget(button)
+    return buttons

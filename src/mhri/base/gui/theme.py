@@ -2,14 +2,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Colours, shapes, fonts and sizes: one look for every widget, in light and in dark.
 
-The colours are those of Okabe and Ito, which people with any kind of colour vision tell apart; and
-none of them is ever the only sign: each state has a shape and a word as well. Sizes follow the
-font, so that a 4K screen with a larger font is a larger panel and not a finer one.
+The colours are those of Okabe and Ito, which people with any kind of colour vision can distinguish;
+and colour is never the only sign: each state has a shape and a word as well. Sizes follow the font,
+so that a 4K screen with a larger font shows a larger panel.
 """
 from python_qt_binding.QtCore import QPointF, QRectF, Qt
 from python_qt_binding.QtGui import (
-    QColor, QFont, QFontDatabase, QFontMetrics, QPainterPath, QPalette, QPen, QPolygonF)
-from python_qt_binding.QtWidgets import QApplication, QPushButton
+    QColor, QFont, QFontDatabase, QFontMetrics, QPainter, QPainterPath, QPalette, QPen,
+    QPolygonF)
+from python_qt_binding.QtWidgets import QApplication
 
 from mhri.base import battery, views
 
@@ -21,18 +22,18 @@ TASK = 'task'
 MUTED = 'muted'
 TEXT = 'text'
 
-# Three of them are darker on a light ground: a sign has a contrast of 3 there, too.
+# Three of them are darker on a light background, to keep a contrast of 3 for signs.
 _LIGHT = {LIVE: '#00855F', ATTENTION: '#A86E00', STOP: '#C65300', DRIVE: '#0072B2',
           TASK: '#A0527D'}
 _DARK = {LIVE: '#10B083', ATTENTION: '#E69F00', STOP: '#E8702A', DRIVE: '#56B4E9',
          TASK: '#CC79A7'}
-# The ground of the stop button, in every theme: white on it has a contrast of 4.5 at least.
+# The background of the stop button, in every theme: white on it has a contrast of at least 4.5.
 STOP_GROUND = QColor('#C35200')
 
-# The looks to choose from, and how they are called.
+# The available themes and their labels.
 DARK, LIGHT, CONTRAST, SYSTEM = 'dark', 'light', 'contrast', 'system'
 THEMES = {DARK: 'Dark', LIGHT: 'Light', CONTRAST: 'High contrast', SYSTEM: 'As the desktop'}
-# Window, field, button, words.
+# Window, field, button, text.
 _GROUNDS = {DARK: ('#22262b', '#16191d', '#353b43', '#eceef0'),
             LIGHT: ('#f0f1f2', '#ffffff', '#e2e4e7', '#14171a'),
             CONTRAST: ('#000000', '#000000', '#1c1c1c', '#ffffff')}
@@ -42,10 +43,11 @@ RING = 'ring'
 TRIANGLE = 'triangle'
 CROSSED_SQUARE = 'crossed_square'
 OCTAGON = 'octagon'
+STOP_SIGN = 'stop_sign'
 TICK = 'tick'
 DIAMOND = 'diamond'
 
-# What each state looks like: shape and colour.
+# Shape and colour of each state.
 LINK_SIGNS = {
     views.WAITING: (RING, MUTED),
     views.LIVE: (DISC, LIVE),
@@ -57,24 +59,33 @@ PROOF_SIGNS = {
     views.PROOF_STOPPED: (TICK, LIVE),
     views.PROOF_NOT_CONFIRMED: (OCTAGON, STOP),
 }
-# A robot on a task, and one whose task waits.
-ON_TASK, TASK_WAITS = (DIAMOND, TASK), (TRIANGLE, ATTENTION)
+# A warning; a robot on a task, and one whose task waits.
+WARNING = (TRIANGLE, ATTENTION)
+ON_TASK, TASK_WAITS = (DIAMOND, TASK), WARNING
 BATTERY_TONES = {battery.FINE: TEXT, battery.LOW: ATTENTION, battery.FLAT: STOP}
 
-# Where an application keeps the desktop's own palette.
+# Property of an application that keeps the desktop's own palette.
 _DESKTOPS = 'mhri_palette_of_the_desktop'
 
-# What is beside a picture, and between pictures, in every theme.
+# The background beside and between pictures, in every theme.
 PICTURE_GROUND = QColor('#0c0e12')
-# What lies under words on a picture, in every theme.
+# The background of text on a picture, in every theme.
 OVER_PICTURE = QColor(12, 14, 18, 205)
+
+# The size of text, as a factor: see :mod:`mhri.base.gui.text_size`.
+text_scale = [1.0]
 
 SMALLEST_TEXT_PT = 11.0
 SMALLEST_TOUCH_PX = 36
+# All distances are multiples of this [px]; corners have this radius.
+GRID = 4
+# The type scale, as factors of ordinary text: the word of a pill; ordinary text; numbers and
+# headings; names; the state of the whole screen.
+SMALL, BODY, HEAD, TITLE, LARGE, HUGE = 0.92, 1.0, 1.15, 1.3, 1.5, 2.0
 
 
 def palette_of(name):
-    """Return the :class:`QPalette` of a theme; of SYSTEM an empty one, which is the desktop's."""
+    """Return the :class:`QPalette` of a theme; for SYSTEM an empty one, i.e. the desktop's."""
     if name not in _GROUNDS:
         return QPalette()
     window, field, button, words = map(QColor, _GROUNDS[name])
@@ -94,7 +105,7 @@ def palette_of(name):
 
 
 def apply(target, name):
-    """Give an application, or a widget and all in it, the look of a theme.
+    """Apply a theme to an application, or to a widget and its children.
 
     :param target: :class:`QApplication` or :class:`QWidget`
     :param name: DARK, LIGHT, CONTRAST or SYSTEM
@@ -109,12 +120,12 @@ def apply(target, name):
 
 
 def is_dark(palette):
-    """Tell whether a palette is a dark one."""
+    """Return whether a palette is dark."""
     return palette.color(QPalette.Window).lightness() < 128
 
 
 def over_picture(palette):
-    """Return a palette for what is written on a picture: light on dark, whatever the theme."""
+    """Return a palette for text on a picture: light on dark in every theme."""
     result = QPalette(palette)
     for role, value in ((QPalette.Window, '#0c0e12'), (QPalette.Base, '#0c0e12'),
                         (QPalette.WindowText, '#f4f4f4'), (QPalette.Text, '#f4f4f4'),
@@ -133,7 +144,7 @@ def colour(name, palette):
 
 
 def blend(one, other, share):
-    """Return a colour between two: ``share`` 0 is the one, 1 the other."""
+    """Return a blend of two colours: ``share`` 0 is the first, 1 the second."""
     return QColor.fromRgbF(*[a + (b - a) * share for a, b in zip(
         one.getRgbF()[:3], other.getRgbF()[:3])])
 
@@ -161,11 +172,27 @@ def line_colour(palette):
     return blend(palette.color(QPalette.WindowText), palette.color(QPalette.Window), 0.70)
 
 
+def hover_colour(palette):
+    """Return the background of a flat control below the pointer."""
+    return blend(palette.color(QPalette.Window), palette.color(QPalette.WindowText), 0.10)
+
+
+def edge_colour(palette):
+    """Return the colour of the edge of a control; strong where the ground is black."""
+    window, text = palette.color(QPalette.Window), palette.color(QPalette.WindowText)
+    return blend(text, window, 0.35 if not window.lightness() else 0.62)
+
+
 def base_font(font):
-    """Return the font for ordinary text: the desktop's, but never below 11 points."""
-    result = QFont(font)
-    if 0.0 < font.pointSizeF() < SMALLEST_TEXT_PT:
-        result.setPointSizeF(SMALLEST_TEXT_PT)
+    """Return the font for ordinary text: the desktop's, but at least 11 points, times the scale.
+
+    :param font: for its family and style
+    """
+    result, desktop = QFont(font), QApplication.font()
+    if desktop.pointSizeF() > 0.0:
+        result.setPointSizeF(max(desktop.pointSizeF(), SMALLEST_TEXT_PT) * text_scale[0])
+    elif desktop.pixelSize() > 0:
+        result.setPixelSize(round(desktop.pixelSize() * text_scale[0]))
     return result
 
 
@@ -191,32 +218,53 @@ def number_font(font):
     return fixed
 
 
+def on_grid(length):
+    """Return a distance [px] as the nearest multiple of :data:`GRID`, at least one."""
+    return GRID * max(1, round(length / GRID))
+
+
 def touch_size(widget):
-    """Return the least width and height [px] of what a finger has to hit."""
+    """Return the minimum width and height of a touch target [px]."""
     return max(SMALLEST_TOUCH_PX, 2 * widget.fontMetrics().height())
 
 
 def text_width(font, *samples):
-    """Return the width [px] that the widest of the samples needs."""
+    """Return the width of the widest sample [px]."""
     metrics = QFontMetrics(font)
     return max(metrics.horizontalAdvance(sample) for sample in samples) + 2
 
 
-def finger_button(parent, name, text, tip='', also=''):
-    """Return a button for fingers; Tab comes to it, but a click takes the keyboard from nothing.
+def for_fingers(part, name='', spoken='', tip=''):
+    """Make a widget high enough for touch, and return it.
 
-    :param also: what else it will say; it is wide enough for that, too
+    It gets the focus by Tab, but not by a click.
+
+    :param spoken: its accessible name
     """
-    button, touch = QPushButton(text, parent), touch_size(parent)
-    button.setObjectName(name)
-    button.setToolTip(tip)
-    button.setFocusPolicy(Qt.TabFocus)
-    button.setMinimumSize(text_width(button.font(), text, also) + touch, touch)
+    part.setObjectName(name)
+    part.setAccessibleName(spoken)
+    part.setToolTip(tip)
+    part.setFocusPolicy(Qt.TabFocus)
+    part.setMinimumHeight(touch_size(part))
+    return part
+
+
+def finger_button(parent, name, text, tip='', also='', room=1.0):
+    """Return a button for touch with a margin beside its text.
+
+    :param also: another text of the button, for which it is wide enough, too
+    :param room: margin beside its text, as a fraction of the touch size
+    """
+    # Imported here, because controls are painted in the colours of this module.
+    from mhri.base.gui.controls import Button
+    button = for_fingers(Button(text, parent), name, tip=tip)
+    touch = touch_size(parent)
+    button.setMinimumWidth(max(touch, text_width(button.font(), text, also) + int(room * touch)))
     return button
 
 
 def fitting_text(metrics, texts, width):
-    """Return the first of some texts that fits a width [px]; where none does, the last, cut off.
+    """Return the first of some texts that fits a width [px]; if none does, the last, cut off.
 
     :param metrics: :class:`QFontMetrics` of the font they are written in
     """
@@ -226,25 +274,37 @@ def fitting_text(metrics, texts, width):
     return metrics.elidedText(texts[-1], Qt.ElideRight, int(width))
 
 
+def smooth_painter(widget):
+    """Return an antialiased painter on a widget."""
+    painter = QPainter(widget)
+    painter.setRenderHint(QPainter.Antialiasing)
+    return painter
+
+
+def set_ink(painter, pen=Qt.NoPen, brush=Qt.NoBrush):
+    """Set the pen and the brush of a painter; by default none."""
+    painter.setPen(pen)
+    painter.setBrush(brush)
+
+
 def paint_sign(painter, rect, shape, ink, ground):
     """Paint one of the state shapes.
 
-    :param rect: :class:`QRectF`; the shape fills the square in its middle
+    :param rect: :class:`QRectF`; the shape fills the square in its centre
     :param ink: :class:`QColor` of the shape
-    :param ground: :class:`QColor` of what is cut out of it
+    :param ground: :class:`QColor` of its cut-outs
     """
     side = min(rect.width(), rect.height())
     painter.save()
     painter.translate(rect.center())
     painter.scale(side / 20.0, side / 20.0)
-    painter.setPen(Qt.NoPen)
-    painter.setBrush(ink)
+    set_ink(painter, brush=ink)
     _SHAPES[shape](painter, ink, ground)
     painter.restore()
 
 
 def paint_battery(painter, rect, fraction, ink):
-    """Paint an upright battery that is as full as it is charged.
+    """Paint an upright battery filled to its charge.
 
     :param rect: :class:`QRectF` to fill
     :param fraction: its charge in [0, 1]
@@ -252,22 +312,22 @@ def paint_battery(painter, rect, fraction, ink):
     """
     cap = rect.height() / 7.0
     body = rect.adjusted(0.7, cap, -0.7, -0.7)
-    painter.setPen(Qt.NoPen)
-    painter.setBrush(ink)
+    set_ink(painter, brush=ink)
     painter.drawRect(QRectF(rect.center().x() - rect.width() / 5.0, rect.top(),
                             rect.width() / 2.5, cap))
     inside = body.adjusted(1.6, 1.6, -1.6, -1.6)
     inside.setTop(inside.bottom() - inside.height() * min(1.0, max(0.0, fraction)))
     painter.drawRect(inside)
-    painter.setBrush(Qt.NoBrush)
-    painter.setPen(QPen(ink, 1.4))
+    set_ink(painter, QPen(ink, 1.4))
     painter.drawRoundedRect(body, 1.2, 1.2)
 
 
 def paint_edge(painter, rect, width, ink, dashed=False):
-    """Paint a frame along the inside of a :class:`QRect`, of a width [px]; dashed for a keyboard.
+    """Paint a frame along the inside of a :class:`QRect`, dashed to show the keyboard focus.
 
-    What the dashes leave is dark.
+    The gaps between the dashes are dark.
+
+    :param width: width of the frame [px]
     """
     half = width / 2.0
     strokes = [(PICTURE_GROUND, Qt.SolidLine), (ink, Qt.DashLine)] if dashed \
@@ -277,19 +337,43 @@ def paint_edge(painter, rect, width, ink, dashed=False):
         painter.drawRect(QRectF(rect).adjusted(half, half, -half, -half))
 
 
+def paint_box(painter, rect, ground, edge=None, width=1.0):
+    """Paint a rectangle with round corners.
+
+    :param rect: :class:`QRectF` to fill
+    :param ground: :class:`QColor` inside
+    :param edge: :class:`QColor` of the edge, None for no edge
+    :param width: of the edge [px]
+    """
+    painter.save()
+    painter.setRenderHint(QPainter.Antialiasing)
+    set_ink(painter, Qt.NoPen if edge is None else QPen(edge, width), ground)
+    half = width / 2.0
+    painter.drawRoundedRect(rect.adjusted(half, half, -half, -half), GRID, GRID)
+    painter.restore()
+
+
+def paint_focus(painter, rect, palette):
+    """Paint the frame of the keyboard focus inside a :class:`QRect`, in the accent colour."""
+    painter.save()
+    painter.setRenderHint(QPainter.Antialiasing)
+    set_ink(painter, QPen(colour(DRIVE, palette), 2))
+    painter.drawRoundedRect(QRectF(rect).adjusted(1, 1, -1, -1), GRID, GRID)
+    painter.restore()
+
+
 def paint_stopped_frame(painter, rect, palette):
-    """Paint the ground of whatever says that everything is stopped.
+    """Paint the background of the stopped state.
 
     :param rect: :class:`QRect` to fill
     """
     ink = colour(STOP, palette)
-    painter.setPen(QPen(ink, 4))
-    painter.setBrush(blend(palette.color(QPalette.Window), ink, 0.16))
+    set_ink(painter, QPen(ink, 4), blend(palette.color(QPalette.Window), ink, 0.16))
     painter.drawRoundedRect(QRectF(rect).adjusted(2, 2, -2, -2), 6, 6)
 
 
 def _stroke(colour_, width):
-    """Return a round pen."""
+    """Return a pen with round caps and joins."""
     return QPen(colour_, width, Qt.SolidLine, Qt.RoundCap, Qt.RoundJoin)
 
 
@@ -298,8 +382,7 @@ def _disc(painter, ink, ground):
 
 
 def _ring(painter, ink, ground):
-    painter.setBrush(Qt.NoBrush)
-    painter.setPen(QPen(ink, 2.5))
+    set_ink(painter, QPen(ink, 2.5))
     painter.drawEllipse(QPointF(0, 0), 7, 7)
 
 
@@ -316,27 +399,36 @@ def _triangle(painter, ink, ground):
 
 
 def _crossed_square(painter, ink, ground):
-    painter.setBrush(Qt.NoBrush)
-    painter.setPen(_stroke(ink, 2.4))
+    set_ink(painter, _stroke(ink, 2.4))
     painter.drawRect(QRectF(-7.5, -7.5, 15, 15))
     painter.drawLine(QPointF(-3.6, -3.6), QPointF(3.6, 3.6))
     painter.drawLine(QPointF(-3.6, 3.6), QPointF(3.6, -3.6))
 
 
-def _octagon(painter, ink, ground):
+def _draw_octagon(painter):
     near, far = 3.7, 9.0
     painter.drawPolygon(QPolygonF([QPointF(*corner) for corner in (
         (-near, -far), (near, -far), (far, -near), (far, near),
         (near, far), (-near, far), (-far, near), (-far, -near))]))
+
+
+def _octagon(painter, ink, ground):
+    _draw_octagon(painter)
     _exclamation(painter, ground, -4.6, 4.8)
+
+
+def _stop_sign(painter, ink, ground):
+    set_ink(painter, _stroke(ink, 2.2))
+    _draw_octagon(painter)
+    set_ink(painter, brush=ink)
+    painter.drawRect(QRectF(-4.0, -4.0, 8.0, 8.0))
 
 
 def _tick(painter, ink, ground):
     path = QPainterPath(QPointF(-7, 0.5))
     path.lineTo(-2.4, 5.4)
     path.lineTo(7, -5.6)
-    painter.setBrush(Qt.NoBrush)
-    painter.setPen(_stroke(ink, 3.4))
+    set_ink(painter, _stroke(ink, 3.4))
     painter.drawPath(path)
 
 
@@ -345,4 +437,4 @@ def _diamond(painter, ink, ground):
 
 
 _SHAPES = {DISC: _disc, RING: _ring, TRIANGLE: _triangle, CROSSED_SQUARE: _crossed_square,
-           OCTAGON: _octagon, TICK: _tick, DIAMOND: _diamond}
+           OCTAGON: _octagon, STOP_SIGN: _stop_sign, TICK: _tick, DIAMOND: _diamond}

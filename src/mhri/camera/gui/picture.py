@@ -3,22 +3,22 @@
 """A camera's picture as large as fits; for depth with its scale and the distance at a point."""
 import math
 
-from python_qt_binding.QtCore import QPointF, QRect, QRectF, QSize, Qt
+from python_qt_binding.QtCore import QPoint, QPointF, QRect, QRectF, QSize, Qt
 from python_qt_binding.QtGui import QBrush, QColor, QImage, QPainter, QPalette, QPen
 from python_qt_binding.QtWidgets import QSizePolicy, QWidget
 
 from mhri.base.gui import theme
+from mhri.base.gui.painting import paint_warning, Sized
 from mhri.camera.depth_colour import colour_at
+from mhri.camera.gui.path_layer import paint_path
 
 NO_MEASUREMENT = 'no measurement'
-_FRAME_PX = 5
 _SCALE_STEPS = 128
-# Scale and cross are left out where the picture would be narrower than this [heights of a line].
+# Scale and cross are hidden in a narrower picture [heights of a line].
 _ROOMY_UNITS = 18.0
-# As DepthColour hatches what has no measurement.
+# The colours of invalid pixels, as in DepthColour.
 _NONE_GROUND, _NONE_LINES = '#a0a0a0', '#606060'
-# A picture that is smaller than its room by no more than this is shown as it is, which is quicker
-# and sharper than a scaled one.
+# A picture smaller than its room by at most this is not scaled, which is faster and sharper.
 _CLOSE_ENOUGH_PX = 3
 
 
@@ -30,37 +30,52 @@ def distance_text(depth_m):
 
 
 def titles(warning):
-    """Return the first line of a warning in fewer and fewer words: "OLD PICTURE, 2.4 s"."""
+    """Return ever shorter versions of the first line of a warning: "OLD PICTURE, 2.4 s"."""
     age = warning.rpartition(', ')[2]
     return warning, warning.replace(' PICTURE, ', ' '), age
 
 
-class PictureView(QWidget):
-    """Shows one :class:`mhri.camera.images.Frame`, or words where there is none.
+def _cover(size, room, cut):
+    """Return a picture's :class:`QSize` in a room that it fills if at most a share is cut off."""
+    inside = size.scaled(room, Qt.KeepAspectRatio)
+    outside = size.scaled(room, Qt.KeepAspectRatioByExpanding)
+    if inside.isEmpty() or outside.width() * (1.0 - cut) <= inside.width() + 1:
+        return outside if not inside.isEmpty() else inside
+    return QSize(round(inside.width() / (1.0 - cut)), round(inside.height() / (1.0 - cut)))
 
-    For depth, the distance under the pointer is written beside a cross; while the pointer is
-    elsewhere, that in the middle of the picture.
+
+class PictureView(Sized, QWidget):
+    """Shows one :class:`mhri.camera.images.Frame`, or words without one.
+
+    For depth, the distance under the pointer is shown beside a cross, or the distance in the middle
+    of the picture while the pointer is elsewhere.
 
     """
 
     def __init__(self, parent=None):
         super().__init__(parent)
-        self._frame = None
+        #: the displayed frame, or None
+        self.frame = None
         self._image = None
-        self._words = ''
-        self._warning = ''
+        #: text in place of a picture
+        self.words = ''
+        #: text across the picture, '' while it is live
+        self.warning = ''
+        #: the displayed :class:`mhri.sensors.floor.FloorPath`, or None
+        self.path = None
         self._point = None
         self._with_scale = False
         self._clear_px = 0
+        self._cut = 0.0
         self._build()
 
     def _build(self):
-        """Set what never changes."""
+        """Set up the widget."""
         self.setObjectName('picture')
         self.setAttribute(Qt.WA_OpaquePaintEvent)
-        # Beside a picture it is dark in every theme.
+        # The border of a picture is dark in every theme.
         self.setPalette(theme.over_picture(self.palette()))
-        # From far, on top, to near; colour_at is the one place that knows the colours.
+        # From far, at the top, to near.
         self._scale = QImage(1, _SCALE_STEPS, QImage.Format_RGB32)
         for step in range(_SCALE_STEPS):
             far_first = _SCALE_STEPS - 1 - step
@@ -68,95 +83,116 @@ class PictureView(QWidget):
         self.setMouseTracking(True)
         self.setSizePolicy(QSizePolicy.Expanding, QSizePolicy.Expanding)
 
-    @property
-    def frame(self):
-        """The frame on show, or None."""
-        return self._frame
-
-    @property
-    def words(self):
-        """What is said where there is no picture."""
-        return self._words
-
-    @property
-    def warning(self):
-        """What is said across the picture, '' while it is live."""
-        return self._warning
-
     def show_frame(self, frame):
-        """Show a frame; its pixels are not copied, so nobody may change them afterwards."""
+        """Show a frame; its pixels are not copied, and must not change afterwards."""
         height, width = frame.rgb.shape[:2]
-        # QImage does not keep what its pixels belong to alive: the frame does, beside it.
+        # QImage does not keep the array of its pixels alive; the frame does.
         self._image = QImage(frame.rgb.data, width, height, 3 * width, QImage.Format_RGB888)
-        self._frame = frame
+        self.frame = frame
         self.update()
 
     def clear(self, words, with_scale=False):
-        """Show words instead of a picture; ``with_scale``: depth comes next, leave it its room."""
-        if self._frame is not None or (words, with_scale) != (self._words, self._with_scale):
-            self._words, self._with_scale = words, with_scale
-            self._frame = self._image = None
+        """Show words instead of a picture; ``with_scale`` reserves the room of the depth scale."""
+        if self.frame is not None or (words, with_scale) != (self.words, self._with_scale):
+            self.words, self._with_scale = words, with_scale
+            self.frame = self._image = self.path = None
             self.update()
 
     def show_warning(self, warning):
-        """Say across the picture why it is not to be trusted; '' takes it away.
+        """Show a warning across the picture; '' removes it.
 
-        The first line is set large, what follows below it.
+        Its first line is large.
         """
-        if warning != self._warning:
-            self._warning = warning
+        if warning != self.warning:
+            self.warning = warning
+            self.update()
+
+    def show_path(self, path):
+        """Show a :class:`mhri.sensors.floor.FloorPath` on the floor of the picture; None: none.
+
+        It is hidden on an old picture, and in a thumbnail.
+        """
+        if path is not None or self.path is not None:
+            self.path = path
             self.update()
 
     def keep_clear(self, height):
-        """Write below so much of the upper end [px]: something else lies on that."""
+        """Set the height at the top that something else covers [px]."""
         if height != self._clear_px:
             self._clear_px = height
             self.update()
 
+    def show_cut(self, cut):
+        """Set the maximum share of a picture that is cut off to fill the room, 0 to 1."""
+        if cut != self._cut:
+            self._cut = cut
+            self.update()
+
     def room(self):
-        """Return the rectangle that a picture may fill."""
+        """Return the rectangle available for a picture."""
         scale = self._scale_width() if self._with_scale and self._is_roomy() else 0
         return self.rect().adjusted(0, 0, -scale, 0)
 
     def _is_roomy(self):
-        """Tell whether there is room for more than the picture: a thumbnail has none."""
+        """Return whether there is room for more than the picture, unlike in a thumbnail."""
         return self.width() >= _ROOMY_UNITS * self.fontMetrics().height()
 
     def target(self):
-        """Return the rectangle that the picture on show fills; empty without one."""
+        """Return the rectangle of the picture, empty without one.
+
+        What is outside of the room is cut off: the top of a picture that is too high, as the floor
+        is what one drives on, and both sides of one that is too wide.
+        """
         if self._image is None:
             return QRectF()
         room, ratio = QRectF(self.room()), self.devicePixelRatioF()
-        size = QSize(*self._frame.full_size) if all(self._frame.full_size) else self._image.size()
-        shown = size.scaled(self.room().size() * ratio, Qt.KeepAspectRatio)
-        image = self._image.size()
+        shown, image = self.size_on_screen(), self._image.size()
         if abs(shown.width() - image.width()) <= _CLOSE_ENOUGH_PX \
                 and abs(shown.height() - image.height()) <= _CLOSE_ENOUGH_PX:
             shown = image
-        # On whole pixels of the screen, or it would be blurred.
+        # Align it to whole pixels of the screen: otherwise it would be blurred.
         left = math.floor((room.width() * ratio - shown.width()) / 2.0)
-        top = math.floor((room.height() * ratio - shown.height()) / 2.0)
+        spare = room.height() * ratio - shown.height()
+        top = math.floor(spare / 2.0 if spare > 0.0 else spare)
         return QRectF(left / ratio, top / ratio, shown.width() / ratio, shown.height() / ratio)
 
+    def size_on_screen(self):
+        """Return the :class:`QSize` of the picture in pixels of the screen, parts cut off included.
+
+        One that comes in this size is not scaled here, on the GUI thread. Without a picture, it is
+        the size of the room.
+        """
+        room = self.room().size() * self.devicePixelRatioF()
+        return room if self._image is None else _cover(self._whole(), room, self._cut)
+
+    def _whole(self):
+        """Return the size of the whole picture, as the camera sent it."""
+        return QSize(*self.frame.full_size) if all(self.frame.full_size) else self._image.size()
+
+    def paint_copy(self, painter, box, cut):
+        """Paint the picture into a :class:`QRect`, and nothing without one.
+
+        :param cut: maximum share that is cut off to fill it
+        """
+        if self._image is None:
+            return
+        shown = QRect(QPoint(0, 0), _cover(self._whole(), box.size(), cut))
+        shown.moveCenter(box.center())
+        painter.save()
+        painter.setClipRect(box)
+        painter.setRenderHint(QPainter.SmoothPixmapTransform)
+        painter.drawImage(shown, self._image)
+        painter.restore()
+
     def distance_at(self, point):
-        """Return (distance [m] or NaN, True) under a point of the widget, (NaN, False) beside."""
+        """Return (distance [m] or NaN, True) at a point of the widget, (NaN, False) outside."""
         target = self.target()
-        if self._frame is None or self._frame.depth_m is None or not target.contains(point):
+        if self.frame is None or self.frame.depth_m is None or not target.contains(point):
             return math.nan, False
-        height, width = self._frame.depth_m.shape
+        height, width = self.frame.depth_m.shape
         column = int((point.x() - target.left()) / target.width() * width)
         row = int((point.y() - target.top()) / target.height() * height)
-        return float(self._frame.depth_m[min(row, height - 1), min(column, width - 1)]), True
-
-    def sizeHint(self):  # noqa: N802
-        """Return a comfortable size."""
-        unit = self.fontMetrics().height()
-        return QSize(20 * unit, 15 * unit)
-
-    def minimumSizeHint(self):  # noqa: N802
-        """Return the least in which something can be seen."""
-        unit = self.fontMetrics().height()
-        return QSize(9 * unit, 5 * unit)
+        return float(self.frame.depth_m[min(row, height - 1), min(column, width - 1)]), True
 
     def mouseMoveEvent(self, event):  # noqa: N802
         """Follow the pointer."""
@@ -164,12 +200,12 @@ class PictureView(QWidget):
         self.update()
 
     def mousePressEvent(self, event):  # noqa: N802
-        """Follow the pointer, and leave the click to the tile."""
+        """Follow the pointer, and pass the click to the tile."""
         self.mouseMoveEvent(event)
         event.ignore()
 
     def leaveEvent(self, event):  # noqa: N802
-        """Go back to the middle."""
+        """Return the cross to the middle."""
         self._point = None
         self.update()
 
@@ -183,7 +219,7 @@ class PictureView(QWidget):
             painter.setPen(theme.colour(theme.MUTED, palette))
             inset = self.fontMetrics().height()
             painter.drawText(self.rect().adjusted(inset, inset, -inset, -inset),
-                             int(Qt.AlignCenter | Qt.TextWordWrap), self._words)
+                             int(Qt.AlignCenter | Qt.TextWordWrap), self.words)
             return
         target = self.target()
         painter.fillRect(self.rect(), ground)
@@ -191,9 +227,11 @@ class PictureView(QWidget):
         painter.drawImage(target, self._image)
         if self._with_scale and self._is_roomy():
             self._paint_scale(painter)
-        if self._warning:
+        if self.path is not None and not self.warning and self._is_roomy():
+            paint_path(painter, target, self.path, palette)
+        if self.warning:
             self._paint_warning(painter, target)
-        elif self._frame.depth_m is not None and self._is_roomy():
+        elif self.frame.depth_m is not None and self._is_roomy():
             self._paint_cross(painter, target)
 
     def _scale_width(self):
@@ -201,7 +239,7 @@ class PictureView(QWidget):
         return self.fontMetrics().horizontalAdvance('00.0 m') + 2 * self.fontMetrics().height()
 
     def _paint_scale(self, painter):
-        """Paint the colours of depth, the distances they stand for, and that of no measurement."""
+        """Paint the colours of depth with their distances, and the hatch of invalid pixels."""
         unit, room = self.fontMetrics().height(), self.rect().adjusted(0, self._clear_px, 0, 0)
         left = room.right() - self._scale_width() + unit // 2
         bar = QRect(left, room.top() + unit // 2, unit, room.height() - round(2.75 * unit))
@@ -219,9 +257,9 @@ class PictureView(QWidget):
         right = int(Qt.AlignLeft | Qt.AlignVCenter)
         painter.drawText(none.translated(unit + unit // 3, 0).adjusted(0, -4, 4 * unit, 4), right,
                          'none')
-        if self._frame is None or not self._frame.depth_range_m:
+        if self.frame is None or not self.frame.depth_range_m:
             return
-        near, far = self._frame.depth_range_m
+        near, far = self.frame.depth_range_m
         count = max(2, min(6, bar.height() // (2 * unit) + 1))
         for index in range(count):
             share = index / (count - 1.0)
@@ -231,55 +269,35 @@ class PictureView(QWidget):
                              right, '{:.1f} m'.format(near + share * (far - near)))
 
     def _paint_cross(self, painter, target):
-        """Paint a cross and the distance there."""
+        """Paint a cross and the distance at it."""
         point = self._point if self._point is not None and target.contains(self._point) \
             else target.center()
         depth_m, _ = self.distance_at(point)
         unit = self.fontMetrics().height()
         painter.setRenderHint(QPainter.Antialiasing)
-        # White on black is seen on every colour.
+        # White on black is visible on every colour.
         for ink, width in ((Qt.black, 4.0), (Qt.white, 1.6)):
             painter.setPen(QPen(ink, width))
             for across, along in ((1, 0), (-1, 0), (0, 1), (0, -1)):
                 step = QPointF(across, along)
                 painter.drawLine(point + 0.3 * unit * step, point + 0.9 * unit * step)
         words = distance_text(depth_m)
-        painter.setFont(theme.number_font(theme.larger(self.font(), 1.1, bold=True)))
+        painter.setFont(theme.number_font(theme.larger(self.font(), theme.HEAD, bold=True)))
         metrics = painter.fontMetrics()
         box = QRectF(0, 0, metrics.horizontalAdvance(words) + unit, metrics.height() + unit / 3.0)
         box.moveBottomLeft(point + QPointF(0.6 * unit, -0.6 * unit))
         box.moveRight(min(box.right(), target.right() - 2))
         box.moveTop(max(box.top(), target.top() + 2, self._clear_px + 2))
-        painter.setPen(Qt.NoPen)
-        painter.setBrush(QColor(0, 0, 0, 200))
+        theme.set_ink(painter, brush=QColor(0, 0, 0, 200))
         painter.drawRoundedRect(box, 4, 4)
         painter.setPen(Qt.white)
         painter.drawText(box, int(Qt.AlignCenter), words)
 
     def _paint_warning(self, painter, target):
-        """Paint a frame around the picture and words across its top, and take the light off it."""
-        ink = theme.colour(theme.ATTENTION, self.palette())
-        painter.fillRect(target, QColor(0, 0, 0, 115))
-        target.setTop(max(target.top(), self._clear_px))
-        half = _FRAME_PX / 2.0
-        painter.setPen(QPen(ink, _FRAME_PX))
-        painter.setBrush(Qt.NoBrush)
-        painter.drawRect(target.adjusted(half, half, -half, -half))
+        """Dim the picture, and paint a frame around it and words across its top."""
+        title, _, reason = self.warning.partition('\n')
+        band = paint_warning(painter, target, self, titles(title), self._clear_px)
         unit = self.fontMetrics().height()
-        font = theme.larger(self.font(), 1.15, bold=True)
-        painter.setFont(font)
-        band = QRectF(target.left(), target.top(), target.width(), 2.0 * unit)
-        painter.fillRect(band, ink)
-        painter.setRenderHint(QPainter.Antialiasing)
-        side = 1.3 * unit
-        theme.paint_sign(painter, QRectF(band.left() + unit / 2.0, band.top() + 0.35 * unit, side,
-                                         side), theme.TRIANGLE, theme.readable_on(ink), ink)
-        title, _, reason = self._warning.partition('\n')
-        words = band.adjusted(2.4 * unit, 0, -unit / 2.0, 0)
-        painter.setPen(theme.readable_on(ink))
-        # The age is what matters: the word before it gives way.
-        painter.drawText(words, int(Qt.AlignLeft | Qt.AlignVCenter), theme.fitting_text(
-            painter.fontMetrics(), titles(title), words.width()))
         painter.setFont(self.font())
         painter.setPen(Qt.white)
         below = QRectF(target.left() + unit, band.bottom() + unit / 2.0,

@@ -10,12 +10,12 @@ from mhri.camera.ros.camera_feed import CameraFeed
 PERIOD_S = 1.0
 
 
-class Wish(NamedTuple):
+class PictureRequest(NamedTuple):
     """A picture or a point cloud with a place on the screen.
 
     ``robot``: its name, for a cloud with a word added; ``importance``: one of
-    :data:`mhri.camera.budget.IMPORTANCES`, a checked robot's picture is DRIVEN;
-    ``visible``: false if nobody can see it (tile closed, minimised, on another page).
+    :data:`mhri.camera.budget.IMPORTANCES`, DRIVEN for a selected robot; ``visible``: false if
+    hidden (tile closed, minimised, on another page).
     """
 
     robot: str
@@ -34,32 +34,33 @@ class CameraBudget:
         self._settings = settings
         self._clock = clock
         self._planner = BudgetPlanner()
-        self._wishes = []
+        self._requests = []
         self._grants = {}
         self._due = clock()
-        #: a sentence while the driven robots' pictures alone pass the budget, else ''
+        #: a sentence while the driven robots' pictures alone exceed the budget, else ''
         self.note = ''
 
-    def settle(self, wishes):
-        """Hand every feed its grant; return them, {robot: Grant}.
+    def settle(self, requests):
+        """Pass every feed its grant; return them, {robot: Grant}.
 
         Call it at every redraw: it plans once a second, and at once when a picture opens or the
-        importance changes. That takes about a millisecond for a dozen pictures and asks nobody.
+        importance changes. That takes about a millisecond for a dozen pictures, without any master
+        or network call.
 
-        :param wishes: a :class:`Wish` for every feed that is open, each name once
+        :param requests: a :class:`PictureRequest` for every feed that is open, each name once
         """
-        wishes, now = list(wishes), self._clock()
-        if wishes == self._wishes and now < self._due:
+        requests, now = list(requests), self._clock()
+        if requests == self._requests and now < self._due:
             return self._grants
-        self._wishes, self._due = wishes, now + PERIOD_S
+        self._requests, self._due = requests, now + PERIOD_S
         settings = self._settings()
-        pictures = [Picture(wish.robot, wish.importance, wish.visible, *wish.feed.figures())
-                    for wish in wishes]
+        pictures = [Picture(robot, importance, visible, *feed.figures())
+                    for robot, importance, feed, visible in requests]
         plan = self._planner.plan(pictures, settings.camera_budget_mbit_s * 1e6,
                                   settings.thumbnail_hz, now)
-        for wish in wishes:
-            wish.feed.grant(plan.grants[wish.robot])
-        # What was not measured yet is not told as if it had been.
+        for request in requests:
+            request.feed.grant(plan.grants[request.robot])
+        # Assumed figures do not justify a note.
         guessed = any(None in (picture.bits, picture.native_hz) for picture in pictures
                       if picture.visible and picture.importance == DRIVEN)
         self.note, self._grants = '' if guessed else plan.note, plan.grants

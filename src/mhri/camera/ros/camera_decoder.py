@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Decodes the newest picture of one stream on its way from the network to the screen."""
+"""Decodes the newest picture of one stream, between the network and the screen."""
 import threading
 
 import rospy
@@ -8,14 +8,12 @@ import rospy
 from mhri.base.text import tidy_text
 from mhri.camera.budget import AS_IT_COMES
 from mhri.camera.depth_colour import DepthColour
-from mhri.camera.image_message import read_picture
 from mhri.camera.images import FrameError, OLD_AFTER_S, StreamStatus
+from mhri.camera.ros.pictures import read_picture
 from mhri.camera.stream_meter import StreamMeter, WINDOW_S
 
-# Room for the list of readable encodings.
-_LONGEST_PROBLEM = 400
 SILENT_S = 2.0
-# A thinned stream is late when so many pictures have not come.
+# A thinned stream is late once this many pictures are missing.
 _MISSED = 2.5
 
 
@@ -26,18 +24,17 @@ class Decoder:
 
     :param name: the owner of the pictures, for the log
     :param kind: 'rgb' or 'depth'
-    :param wanted: function that returns ((width, height) [pixels] or None, most pictures per second
-        or None); called on the decoder's thread
+    :param wanted: function that returns ((width, height) [pixels] or None, maximum rate [Hz] or
+        None); called on the decoder's thread
     :param clock: function that returns seconds, monotonic
-    :param depth_range_m: (near, far) of the colours [m], None: follow the scene
     """
 
-    def __init__(self, name, kind, wanted, clock, depth_range_m=None):
+    def __init__(self, name, kind, wanted, clock):
         self._name = name
         self._kind = kind
         self._wanted = wanted
         self._clock = clock
-        self._colour = DepthColour(depth_range_m)
+        self._colour = DepthColour()
         self._changed = threading.Condition()
         self._ended = False
         self._message = self._last = None
@@ -51,7 +48,7 @@ class Decoder:
         self._period_s = 0.0
         threading.Thread(target=self._run, daemon=True, name='camera ' + name).start()
 
-    def hear(self, message_type, data):
+    def receive(self, message_type, data):
         """Store the newest message (rospy's thread)."""
         now = self._clock()
         with self._changed:
@@ -67,26 +64,26 @@ class Decoder:
             self._changed.notify_all()
 
     def expect(self, grant):
-        """Note how much gets through, a :class:`mhri.camera.budget.Grant`."""
+        """Set the :class:`mhri.camera.budget.Grant` of the stream."""
         with self._changed:
             self._grant = grant
             self._period_s = 1.0 / grant.rate_hz if grant.rate_hz else 0.0
-            self._meter.look_back(max(WINDOW_S, _MISSED * self._period_s))
+            self._meter.set_window(max(WINDOW_S, _MISSED * self._period_s))
             self._changed.notify_all()
 
     def explain(self, hint, detail=''):
-        """Say why nothing comes, in plain words and in those of ROS; '' if something should."""
+        """Set why nothing is received, in plain words and in terms of ROS; '' if it should be."""
         with self._changed:
             self._hint, self._detail = tidy_text(hint), tidy_text(detail)
 
-    def hears(self, now):
-        """Tell whether pictures come."""
+    def is_receiving(self, now):
+        """Return whether pictures are being received."""
         with self._changed:
             return self._good_at is not None and (
                 now - self._good_at < max(SILENT_S, _MISSED * self._period_s))
 
     def end(self):
-        """End the decoder; it drops what it holds."""
+        """Stop the decoder, and drop its messages and frame."""
         with self._changed:
             self._ended = True
             self._message = self._last = self._frame = None
@@ -121,10 +118,10 @@ class Decoder:
             if message is None:
                 return
             self._decode(message, view)
-            del message  # hold nothing while waiting for the next
+            del message  # release its memory while waiting for the next
 
     def _decode(self, message, view):
-        """Decode one message; if that fails, count it and say why."""
+        """Decode one message; if that fails, count it and store the reason."""
         message_type, data, received_s = message
         try:
             frame, transport = self.read(message_type, data, view, received_s)
@@ -145,10 +142,10 @@ class Decoder:
         return read_picture(self._kind, message_type, data, view, self._colour, received_s)
 
     def _next(self, last):
-        """Wait for a message and for its turn.
+        """Wait for a message and until it is due.
 
-        :param last: the last one's turn [s]
-        :returns: (message, None at the end; view; its turn [s])
+        :param last: due time of the previous one [s]
+        :returns: (message, None at the end; view; its due time [s])
         """
         with self._changed:
             while not self._ended:
@@ -158,8 +155,8 @@ class Decoder:
                 if self._message is not None and now >= due:
                     message, self._message = self._message, None
                     self._last = message
-                    # From its turn, not from now: else a stream a little late each time would come
-                    # out slower than wanted.
+                    # Count from its due time, not from now: otherwise small delays would add up
+                    # and reduce the rate.
                     return message, view, max(due, now - (due - last))
                 self._changed.wait(None if self._message is None else due - now)
             return None, None, last
@@ -168,8 +165,8 @@ class Decoder:
         with self._changed:
             self._bad += 1
             self._bad_at = received_s
-            # It quotes what a message says of itself, which may be any text.
-            self._problem = tidy_text(problem, _LONGEST_PROBLEM)
+            # The problem quotes the message, which may contain any text.
+            self._problem = tidy_text(problem)
             self._hint = ''
 
     def _note_good(self, frame, transport):

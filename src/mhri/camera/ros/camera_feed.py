@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""One camera of one robot: finds, subscribes and decodes it at the size shown, newest picture only.
+"""One camera of one robot: found, subscribed and decoded at the displayed size, newest only.
 
 An open feed has two threads: one finds the topic and holds the subscription, the other decodes;
-thinned on the network, it has a third. Closed, or granted nothing, it receives nothing; closed, it
-has no threads.
+while it is thinned on the network, it has a third. It receives nothing while closed or paused;
+while closed, it has no threads.
 """
 import threading
 import time
@@ -15,23 +15,23 @@ from mhri.base.names import topic_of
 from mhri.camera.budget import AS_IT_COMES, Figures
 from mhri.camera.images import StreamStatus
 from mhri.camera.ros.camera_decoder import Decoder
-from mhri.camera.ros.passed_on import PASSED_ON
+from mhri.camera.ros.picture_relay import PICTURE_RELAY
 from mhri.camera.ros.samples import no_answer, Samples
 from mhri.camera.stream_meter import WINDOW_S
 from mhri.camera.transports import AUTO, choose_offer, find_offers, may_carry, RAW
 from mhri.graph.ros.master_api import MasterApi, MasterError
 from mhri.graph.ros.subscription import reachable, Subscription
 
-LOOK_S = 1.0           # between looks at the master while nothing comes
-LOOK_AGAIN_S = 5.0     # ... and while pictures come: a better transport may turn up
-# How long a subscription must last before it tells how often the camera sends [s].
+LOOK_S = 1.0           # period of master queries while nothing is received
+LOOK_AGAIN_S = 5.0     # ... and while pictures are: a better transport may appear
+# Minimum age of a subscription for measuring the rate of the camera [s].
 SETTLED_S = WINDOW_S + 0.5
-# What an operator calls it.
+# The words for the kinds of pictures.
 _WORDS = {'rgb': 'picture', 'depth': 'depth picture'}
 
 
 class CameraFeed:
-    """A camera's pictures, for a widget that asks for them on a timer.
+    """A camera's pictures, for a widget that polls them on a timer.
 
     Subscribes ``/<robot>/<topic>/compressed`` (depth: ``.../compressedDepth``), type
     ``sensor_msgs/CompressedImage``, or ``/<robot>/<topic>``, type ``sensor_msgs/Image``: the first
@@ -41,7 +41,6 @@ class CameraFeed:
     :param topics: camera topics relative to it, in order of preference, without transport
     :param kind: 'rgb' or 'depth'
     :param transport: 'auto', or a name of :meth:`transports`
-    :param depth_range_m: (near, far) of the colours [m]; None: follow the scene
     """
 
     @classmethod
@@ -50,38 +49,36 @@ class CameraFeed:
         topics = getattr(kind, key)
         return cls(robot, topics, key) if topics else None
 
-    def __init__(self, robot, topics, kind, transport=AUTO, clock=time.monotonic,
-                 depth_range_m=None):
+    def __init__(self, robot, topics, kind, transport=AUTO, clock=time.monotonic):
         self.robot = robot
         self.kind = kind
         self.word = _WORDS[kind]
         self._topics = [topic_of(robot, topic) for topic in topics]
         self._transport = transport
         self._clock = clock
-        self._depth_range = depth_range_m
         self._changed = threading.Condition()
         self._finder = None
         self._session = None
-        self._wanted = (None, None)
+        self._view_limits = (None, None)
         self._grant = AS_IT_COMES
         self._offers = []
-        # The subscription, or its stand-in; since when, and the topic of the last one.
+        # The subscription, or its stand-in; the time of its last change; the last topic.
         self._line = None
         self._changed_at = clock()
         self._topic = ''
         self._known = {}
 
     def open(self):
-        """Begin to look for the camera and to decode; return at once."""
+        """Start looking for the camera and decoding; return at once."""
         with self._changed:
             if self._session is not None:
                 return
-            self._session = self.new_session(self._wishes)
+            self._session = self.new_session(self._decoder_limits)
             self._session.expect(self._grant)
             self._changed_at = self._clock()
             if self._finder is None:
-                # A thread that is still giving a topic back to the master goes on with this
-                # instead.
+                # Otherwise a thread that is still unsubscribing the previous topic continues with
+                # this opening.
                 self._finder = threading.Thread(target=self._find, daemon=True,
                                                 name='camera finder ' + self.robot)
                 self._finder.start()
@@ -89,25 +86,25 @@ class CameraFeed:
 
     def new_session(self, wanted):
         """Return the :class:`Decoder` of one opening; ``wanted`` is its argument."""
-        return Decoder(self.robot, self.kind, wanted, self._clock, self._depth_range)
+        return Decoder(self.robot, self.kind, wanted, self._clock)
 
     def find_offers(self, published):
         """Return the offers, best first, among the published {topic: type}."""
         return find_offers(self.kind, self._topics, published)
 
     def line_of(self, session, offer):
-        """Return the class of a subscription to an offer, and its arguments."""
-        return Subscription, offer.topic, PASSED_ON.hearing(offer.topic, session.hear)
+        """Return (class, arguments) of the subscription to an offer."""
+        return Subscription, offer.topic, PICTURE_RELAY.relaying(offer.topic, session.receive)
 
     def samples_of(self, session, offer, grant, native_hz):
-        """Return the same of single pictures of an offer, one at a time."""
-        return (Samples, offer.topic, PASSED_ON.hearing(offer.topic, session.hear),
+        """Return the same for single pictures of an offer."""
+        return (Samples, offer.topic, PICTURE_RELAY.relaying(offer.topic, session.receive),
                 session.explain, grant.rate_hz, native_hz, self._clock)
 
     def close(self, wait_s=0.0):
-        """Decode nothing more and unregister the topic, the latter on the feed's own thread.
+        """Stop decoding and unregister the topic, the latter on the feed's own thread.
 
-        :param wait_s: wait for it at most so long [s]
+        :param wait_s: maximum time to wait for that [s]
         """
         with self._changed:
             session, self._session = self._session, None
@@ -120,17 +117,17 @@ class CameraFeed:
             finder.join(wait_s)
 
     def set_view(self, width=None, height=None, max_hz=None):
-        """Choose how large [pixels] and how often [Hz] pictures come; None: as they are sent."""
+        """Set the size [pixels] and maximum rate [Hz] of the pictures; None: as published."""
         wanted = ((width, height) if width and height else None, max_hz)
-        changed, self._wanted = wanted != self._wanted, wanted
+        changed, self._view_limits = wanted != self._view_limits, wanted
         session = self._session
         if session is not None and changed:
             session.wake()
 
     def grant(self, grant):
-        """Obey a :class:`mhri.camera.budget.Grant` from now on.
+        """Apply a :class:`mhri.camera.budget.Grant` from now on.
 
-        Granted nothing, the feed keeps what it has shown and gives the topic back.
+        At a rate of 0 the feed unsubscribes and keeps its last picture.
         """
         with self._changed:
             changed, self._grant = grant != self._grant, grant
@@ -139,9 +136,9 @@ class CameraFeed:
         if session is not None and changed:
             session.expect(grant)
 
-    def _wishes(self):
-        """Return the decoder's task: (size or None, greatest rate [Hz] or None)."""
-        (view, max_hz), grant = self._wanted, self._grant
+    def _decoder_limits(self):
+        """Return the limits of the decoder: (size or None, maximum rate [Hz] or None)."""
+        (view, max_hz), grant = self._view_limits, self._grant
         rates = [rate for rate in (max_hz, None if grant.sampled else grant.rate_hz) if rate]
         return view, min(rates, default=None)
 
@@ -158,7 +155,7 @@ class CameraFeed:
             return Figures(bits, native_hz, heavy)
         status = session.status(now)
         if line is None or isinstance(line, Subscription) and not status.rate_hz:
-            # Nothing comes: for long, or not yet?
+            # Nothing is received: either not yet, or the camera is silent.
             return Figures(bits, native_hz, heavy) if lasts_s < SETTLED_S else Figures(0.0, 0.0)
         if status.rate_hz:
             bits = status.bits_per_s / status.rate_hz
@@ -169,8 +166,14 @@ class CameraFeed:
         self._known[topic] = (bits, native_hz)
         return Figures(bits, native_hz, heavy)
 
+    @property
+    def topic(self):
+        """The topic that is received, or was last; '' before the first."""
+        with self._changed:
+            return self._topic
+
     def take(self):
-        """Return the newest :class:`Frame`, None if there is no new one since the last call."""
+        """Return the newest :class:`Frame` since the last call, or None."""
         session = self._session
         return session.take() if session is not None else None
 
@@ -184,22 +187,22 @@ class CameraFeed:
         return self.status().age_s
 
     def transports(self):
-        """Return the names of the transports on offer now, best first; [] while not open."""
+        """Return the names of the available transports, best first; [] while closed."""
         with self._changed:
             return list(dict.fromkeys(offer.transport for offer in self._offers))
 
     def choose(self, transport):
-        """Listen to another transport from now on: 'auto' or a name of :meth:`transports`."""
+        """Switch to a transport: 'auto' or a name of :meth:`transports`."""
         with self._changed:
             self._transport = transport
             self._changed.notify_all()
 
     def _find(self):
-        """Hold the wanted subscription; the thread ends when none is wanted."""
+        """Hold the required subscription (the thread); return once none is required."""
         served = None
         while True:
             with self._changed:
-                wish = session, transport, grant = self._wish()
+                depends = session, transport, grant = self._dependencies()
                 if session is None and self._line is None:
                     self._finder = None
                     return
@@ -209,10 +212,10 @@ class CameraFeed:
             served = session
             if grant.rate_hz != 0.0:
                 self._look_guarded(session, AUTO if grant.lighter else transport, grant)
-            self._rest(wish)
+            self._rest(depends)
 
-    def _wish(self):
-        """Return what the subscription depends on."""
+    def _dependencies(self):
+        """Return the values that determine the subscription."""
         return self._session, self._transport, self._grant
 
     def _look_guarded(self, session, transport, grant):
@@ -225,27 +228,27 @@ class CameraFeed:
                 self.robot, error))
             session.explain('cannot look for the camera: {}'.format(error))
 
-    def _rest(self, wish):
-        """Wait until it is time for another look, or there is something to do."""
-        look_s = LOOK_AGAIN_S if wish[0].hears(self._clock()) else LOOK_S
+    def _rest(self, depends):
+        """Wait until the next query is due, or the required subscription has changed."""
+        look_s = LOOK_AGAIN_S if depends[0].is_receiving(self._clock()) else LOOK_S
         with self._changed:
-            if self._wish() == wish:
+            if self._dependencies() == depends:
                 self._changed.wait(look_s)
 
     def _hold(self, make, *args):
-        """Give the present subscription back, and make another; None: none."""
+        """Close the present subscription, and make another unless ``make`` is None."""
         with self._changed:
             line, self._line = self._line, None
             self._changed_at = self._clock()
         if line is not None:
-            _give_back(line)
+            _unsubscribe(line)
         line = make(*args) if make else None
         with self._changed:
             self._line, self._changed_at = line, self._clock()
             self._topic = line.topic if line else self._topic
 
     def _look(self, session, transport, grant):
-        """Look at the master; hold the subscription that fits now, or none.
+        """Query the master; hold the matching subscription, or none.
 
         :raises MasterError: the master cannot be reached
         """
@@ -255,7 +258,7 @@ class CameraFeed:
             self._offers = offers if self._session is session else []
         offer, line = choose_offer(offers, transport), self._line
         if offer is None:
-            session.explain(*self._nothing(transport, offers))
+            session.explain(*self._why_nothing(transport, offers))
             if line and not may_carry(self.kind, transport, line.topic):
                 self._hold(None)
         elif grant.sampled:
@@ -267,25 +270,25 @@ class CameraFeed:
             self._subscribe(session, offer)
 
     def _subscribe(self, session, offer):
-        """Change over to an offer if its sender answers."""
+        """Switch to an offer if its publisher answers."""
         if not reachable(rospy.get_name(), offer.topic):
             session.explain(*no_answer(offer.topic))
             return
         session.explain('no {} has come yet'.format(self.word), 'waiting for ' + offer.topic)
         self._hold(*self.line_of(session, offer))
 
-    def _nothing(self, transport, offers):
-        """Say why there is nothing to subscribe, and in the words of ROS."""
+    def _why_nothing(self, transport, offers):
+        """Return why there is nothing to subscribe to, also in terms of ROS."""
         if offers:
             return '{} offers {}, not {}'.format(
                 self.robot, ', '.join(offer.transport for offer in offers), transport), ''
-        return 'it sends no {}: start its driver'.format(self.word), \
+        return 'no {}; is its driver running?'.format(self.word), \
             'nobody publishes ' + (' or '.join(self._topics) or 'a picture')
 
 
-def _give_back(subscription):
+def _unsubscribe(subscription):
     """Unsubscribe."""
     try:
         subscription.close()
-    except Exception as error:  # rospy raises all sorts while it shuts down
+    except Exception as error:  # rospy raises various types while it shuts down
         rospy.logwarn('%s: unsubscribing: %r', subscription.topic, error)

@@ -1,12 +1,12 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A stream thinned on the network: now and then a connection for one picture alone.
+"""A stream thinned on the network: a connection per picture, at a low rate.
 
-A subscriber gets every message of a topic. To ask the publisher itself for a connection and cut it
-after a message costs an extra 4 to 5 kB, 1 ms of CPU here and about as much there, and does not
-involve the master; to open and close a subscription instead costs 5 ms here, four calls to the
-master and, with a publisher in Python, a whole extra picture (measured on loopback with pictures of
-40 kB; unthinned, 30 Hz take 4 ms of CPU per second).
+A subscriber gets every message of a topic. Requesting a connection from the publisher itself and
+resetting it after a message costs an extra 4 to 5 kB, 1 ms of CPU here and about as much there, and
+no master call. Opening and closing a subscription instead costs 5 ms here, four calls to the master
+and, with a publisher in Python, a whole extra picture (measured on loopback with pictures of 40 kB;
+unthinned, 30 Hz take 4 ms of CPU per second).
 """
 import select
 import threading
@@ -17,17 +17,17 @@ import rospy
 from mhri.graph.ros.master_api import MasterApi, MasterError
 from mhri.recording.ros.raw_link import LinkError, RawLink
 
-# A camera that sends less often than this [s] is not thinned.
-PATIENCE_S = 3.0
+# A camera with a longer period [s] is not thinned.
+TIMEOUT_S = 3.0
 CONNECT_S = 1.0
 AGAIN_S = 1.0
 LOOK_S = 0.1
-# This many pictures the first time: they tell how often the camera sends.
+# Number of pictures read the first time, to measure the rate of the camera.
 FIRST = 4
 
 
 def no_answer(topic):
-    """Return what to say of a sender that is known and silent, and the same in words of ROS."""
+    """Return the problem of an unresponsive publisher, in plain words and in terms of ROS."""
     return ('its camera is known, but does not answer',
             '{} is registered, but its sender does not answer'.format(topic))
 
@@ -35,14 +35,14 @@ def no_answer(topic):
 class Samples:
     """Single messages of one topic as bytes; stands in for a :class:`Subscription`.
 
-    The node is not registered as a subscriber: the graph shows the connections, while they last, at
-    the publisher alone. ``native_hz`` is how often the camera sends, None if unknown.
+    The node is not registered as a subscriber: only the publisher lists the connections, while they
+    last. ``native_hz`` is the rate of the camera [Hz], None if unknown.
 
     :param on_bytes: called with (type, bytes-like) on a thread of this object
-    :param on_problem: called with a sentence, and with more in the words of ROS, if no publisher
+    :param on_problem: called with a sentence, and with details in terms of ROS, if no publisher
         answers
-    :param rate_hz: how often [Hz], > 0; may be changed
-    :param native_hz: if it is known already
+    :param rate_hz: rate of the samples [Hz], > 0; may be changed
+    :param native_hz: rate of the camera [Hz], if already known
     """
 
     def __init__(self, topic, on_bytes, on_problem, rate_hz, native_hz=None, clock=time.monotonic):
@@ -57,7 +57,7 @@ class Samples:
         threading.Thread(target=self._run, daemon=True, name='samples ' + topic).start()
 
     def close(self):
-        """Take no more; return at once; an open connection closes soon."""
+        """Stop; return at once; an open connection closes soon."""
         self._ended.set()
 
     def _run(self):
@@ -72,7 +72,7 @@ class Samples:
                 else self._clock() + AGAIN_S
 
     def _take(self):
-        """Take one picture, several if the camera's rate is unknown; tell whether one came."""
+        """Read one picture, several if the camera's rate is unknown; return whether one arrived."""
         link = self._connect()
         if link is None:
             return False
@@ -86,9 +86,10 @@ class Samples:
             link.cut()
 
     def _connect(self):
-        """Return a connection to the first publisher that answers, None if none does."""
+        """Return a connection to the first responding publisher, or None."""
         try:
-            for uri in [self._uri] if self._uri else self._publishers():
+            for uri in [self._uri] if self._uri else MasterApi(
+                    rospy.get_name()).publisher_uris(self.topic):
                 try:
                     link = RawLink(self.topic, uri, rospy.get_name(), CONNECT_S)
                     self._uri = uri
@@ -102,31 +103,20 @@ class Samples:
         self._on_problem(*no_answer(self.topic))
         return None
 
-    def _publishers(self):
-        """Return the addresses of the topic's publishers.
-
-        :raises MasterError: the master cannot be reached
-        """
-        api = MasterApi(rospy.get_name())
-        nodes = dict((name, nodes) for name, nodes in api.call('getSystemState')[0]).get(
-            self.topic, [])
-        return [uri for uri in api.call_many([('lookupNode', node) for node in nodes]) if uri] \
-            if nodes else []
-
     def _read(self, link, wanted):
-        """Pass on so many messages; tell whether one came in time.
+        """Pass on this many messages; return whether one arrived in time.
 
-        :raises LinkError: the publisher has gone
+        :raises LinkError: the publisher is gone
         """
         times = []
-        until = self._clock() + PATIENCE_S
+        until = self._clock() + TIMEOUT_S
         while len(times) < wanted and self._clock() < until and not self._ended.is_set():
             frames = link.read()
             if not frames:
                 select.select([link], [], [], LOOK_S)
             for frame in frames[:wanted - len(times)]:
                 times.append(self._clock())
-                # Without the length in front.
+                # Skip the length at the start.
                 self._on_bytes(link.fields['type'], memoryview(frame)[4:])
         if len(times) > 1 and times[-1] > times[0]:
             self.native_hz = (len(times) - 1) / (times[-1] - times[0])

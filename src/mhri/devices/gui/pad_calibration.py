@@ -1,88 +1,70 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The page on which a pad is calibrated: a live picture of it, and one question after the other."""
+"""The page for calibrating a pad: a live picture of the pad, and a question for each step."""
 from python_qt_binding.QtCore import Qt, Signal
-from python_qt_binding.QtWidgets import (
-    QHBoxLayout, QLabel, QPushButton, QScrollArea, QVBoxLayout, QWidget)
+from python_qt_binding.QtWidgets import QScrollArea
 
 from mhri.base.gui import theme
-from mhri.base.gui.labels import Sign, TextLine
+from mhri.base.gui.controls import Button
+from mhri.base.gui.labels import plain_label, SignedText, TextLine
+from mhri.base.gui.layouts import add_parts, in_row
+from mhri.base.gui.page import Page
 from mhri.devices.calibration_page import CalibrationView
 from mhri.devices.gui.pad_picture import PadPicture
 
 NO_PAD = 'No pad'
-# So many lines are kept free for what is asked, so that nothing below it jumps.
+# Minimum height of the picture [line heights].
+_PICTURE_UNITS = 10
+# Lines reserved for the question, so that nothing below it jumps.
 _PROMPT_LINES = 3
 
 
-class PadCalibration(QWidget):
-    """A page beside the pictures; values in, presses out. Enter is the large button."""
+class PadCalibration(Page):
+    """A page beside the tiles; takes values and emits presses. Enter is the large button."""
 
     #: the large button: begin, "Next", "None", "Save"
     confirmed = Signal()
     #: "Start again"
     restart_requested = Signal()
-    #: the page came into sight, or is there no more
-    shown = Signal(bool)
 
     def __init__(self, parent=None):
-        super().__init__(parent)
+        super().__init__('pad_page', parent)
         self._view = None
         self._build()
         self._connect()
         self._restore()
 
     def _build(self):
-        """Make and place the parts."""
-        self.setObjectName('pad_page')
-        self.setFont(theme.base_font(self.font()))
+        """Make and place the widgets."""
         self.title = TextLine(self)
-        self.title.setFont(theme.larger(self.font(), 1.2, bold=True))
+        self.title.setFont(theme.larger(self.font(), theme.HEAD, bold=True))
         self.progress = TextLine(self)
-        self.prompt = self._wrapped()
+        self.prompt = plain_label(self)
         self.prompt.setMinimumHeight(_PROMPT_LINES * self.fontMetrics().lineSpacing())
-        self.problem_sign = Sign(self)
-        self.problem = self._wrapped()
-        # A label wants a pixel more than its lines.
-        self.problem.setMinimumHeight(2 * self.fontMetrics().lineSpacing() + 2)
-        self.action_button = QPushButton(self)
-        self.action_button.setObjectName('pad_action')
-        self.again_button = QPushButton('Start again', self)
-        self.again_button.setObjectName('pad_again')
-        for button in (self.action_button, self.again_button):
-            button.setMinimumHeight(theme.touch_size(self))
-            button.setFocusPolicy(Qt.TabFocus)
+        self.problem = SignedText(self)
+        # A label needs slightly more height than its lines.
+        self.problem.label.setMinimumHeight(2 * self.fontMetrics().lineSpacing() + 2)
+        for label in (self.prompt, self.problem.label):
+            label.setAlignment(Qt.AlignLeft | Qt.AlignTop)
+        self.action_button = theme.for_fingers(Button(self), 'pad_action')
+        self.again_button = theme.for_fingers(Button('Start again', self), 'pad_again')
         self.picture = PadPicture(self)
         scroll = QScrollArea(self)
         scroll.setWidget(self.picture)
         scroll.setWidgetResizable(True)
         scroll.setFocusPolicy(Qt.NoFocus)
-        trouble, buttons = QHBoxLayout(), QHBoxLayout()
-        trouble.addWidget(self.problem_sign, 0, Qt.AlignTop)
-        trouble.addWidget(self.problem, 1)
-        buttons.addWidget(self.action_button, 2)
-        buttons.addWidget(self.again_button, 1)
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
-        for part in (self.title, self.progress, self.prompt, trouble, buttons):
-            (column.addLayout if isinstance(part, QHBoxLayout) else column.addWidget)(part)
-        column.addWidget(scroll, 1)
-
-    def _wrapped(self):
-        """Return a label of several lines."""
-        label = QLabel(self)
-        label.setTextFormat(Qt.PlainText)
-        label.setWordWrap(True)
-        label.setAlignment(Qt.AlignLeft | Qt.AlignTop)
-        return label
+        scroll.setMinimumHeight(_PICTURE_UNITS * self.fontMetrics().height())
+        buttons = in_row((self.action_button, 2), (self.again_button, 1))
+        add_parts(self.column, self.title, self.progress, self.prompt, self.problem, buttons,
+                  (scroll, 1))
 
     def _connect(self):
-        """Wire the buttons."""
+        """Connect the buttons."""
         self.action_button.clicked.connect(self.confirmed)
         self.again_button.clicked.connect(self.restart_requested)
 
     def _restore(self):
-        """Begin without a pad."""
+        """Set the initial state, without a pad."""
         self.show_calibration(CalibrationView())
 
     def show_calibration(self, view):
@@ -93,15 +75,14 @@ class PadCalibration(QWidget):
         self.title.show_text(view.pad or NO_PAD)
         self.progress.show_text('{} of {}'.format(view.step, view.steps) if view.step else '',
                                 theme.MUTED)
-        for label, text in ((self.prompt, view.prompt), (self.problem, view.problem)):
-            if label.text() != text:
-                label.setText(text)
-        self.problem_sign.show_sign((theme.TRIANGLE, theme.ATTENTION) if view.problem else None)
+        if view.prompt != self.prompt.text():
+            self.prompt.setText(view.prompt)
+        self.problem.show_text(view.problem, bool(view.problem))
         self._show_buttons(view)
         self.picture.show_pad(view.axes, view.buttons, view.axis_words, view.button_words)
 
     def _show_buttons(self, view):
-        """Say what can be pressed; the keyboard stays with the large button, so Enter is it."""
+        """Show the buttons; the focus stays on the large one, so that Enter presses it."""
         held = self.action_button.hasFocus() or self.again_button.hasFocus()
         self.action_button.setText(view.action)
         self.action_button.setEnabled(bool(view.action))
@@ -109,21 +90,15 @@ class PadCalibration(QWidget):
         if view.action and (held or self.hasFocus()):
             self.action_button.setFocus()
         elif held:
-            # Disabled, a button gives the focus to whatever comes next, which Enter would press.
+            # A disabled button passes the focus on to the next widget, which Enter would press.
             self.setFocus()
 
     def showEvent(self, event):  # noqa: N802
-        """Tell that it is on show, and take the keyboard for Enter."""
+        """Report that the page is visible, and take the keyboard focus for Enter."""
         super().showEvent(event)
-        self.shown.emit(True)
         (self.action_button if self.action_button.isEnabled() else self).setFocus()
 
-    def hideEvent(self, event):  # noqa: N802
-        """Tell that it is not."""
-        super().hideEvent(event)
-        self.shown.emit(False)
-
     def keyPressEvent(self, event):  # noqa: N802
-        """Take Enter while nothing has to be pressed: it must not drive a robot."""
+        """Consume Enter even if no button is enabled: it must not drive a robot."""
         if event.key() not in (Qt.Key_Return, Qt.Key_Enter):
             super().keyPressEvent(event)

@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A live picture of a pad: a bar for each axis, a key for each button, and what they mean."""
+"""A live picture of a pad: a bar for each axis, a key for each button, and their meanings."""
 from python_qt_binding.QtCore import QRectF, QSize, Qt
-from python_qt_binding.QtGui import QPainter, QPalette, QPen
+from python_qt_binding.QtGui import QPalette, QPen
 from python_qt_binding.QtWidgets import QSizePolicy, QWidget
 
 from mhri.base.gui import theme
@@ -12,31 +12,31 @@ _COLUMNS = 6
 
 
 class PadPicture(QWidget):
-    """What the pad says now; values in, nothing out.
+    """Shows the state of a pad, display only.
 
-    A bar grows from the middle of its axis to the right for positive values; an axis of which
-    nothing is known says so. A pressed button is filled.
+    A bar grows from the middle of its axis to the right for positive values; an axis of unknown
+    value is marked as such. A pressed button is filled.
     """
 
     def __init__(self, parent=None):
         super().__init__(parent)
         self._axes, self._buttons = (), ()
         self._axis_words, self._button_words = {}, {}
-        # What each axis showed first: a trigger that nobody touches is at its end.
+        # The first value of each axis counts as its rest: a released trigger is at its end.
         self._first = {}
         self._build()
 
     def _build(self):
-        """Set what never changes."""
+        """Set up the widget."""
         self.setSizePolicy(QSizePolicy.Expanding, QSizePolicy.Fixed)
-        self.setAccessibleName('What the pad says')
+        self.setAccessibleName('State of the pad')
 
     def show_pad(self, axes, buttons, axis_words=(), button_words=()):
         """Show a state of the pad.
 
-        :param axes: values in [-1, 1], None where nothing is known yet
+        :param axes: values in [-1, 1], None if not known yet
         :param buttons: 0 or 1
-        :param axis_words: pairs (index, meaning); so ``button_words``
+        :param axis_words: pairs (index, meaning), likewise ``button_words``
         """
         sizes = len(self._axes), len(self._buttons)
         if sizes[0] != len(axes):
@@ -53,7 +53,7 @@ class PadPicture(QWidget):
             self.updateGeometry()
 
     def seen(self):
-        """Return in words which axes are pushed and which buttons are pressed."""
+        """Return a description of the pushed axes and pressed buttons."""
         pushed = [str(index) for index, value in enumerate(self._axes)
                   if value is not None and abs(value - self._first[index]) > 0.5]
         pressed = [str(index) for index, value in enumerate(self._buttons) if value]
@@ -73,19 +73,18 @@ class PadPicture(QWidget):
         return round(2.6 * self.fontMetrics().height())
 
     def sizeHint(self):  # noqa: N802
-        """Return the room of all axes and buttons."""
+        """Return the size of all axes and buttons."""
         rows = -(-len(self._buttons) // _COLUMNS)
         return QSize(round(16 * self.fontMetrics().height()),
                      len(self._axes) * self._row_px() + rows * self._key_px())
 
     def minimumSizeHint(self):  # noqa: N802
-        """Return the least room: bars get shorter, nothing gets lower."""
+        """Return the minimum size: bars can be shorter, the height is fixed."""
         return QSize(round(12 * self.fontMetrics().height()), self.sizeHint().height())
 
     def paintEvent(self, event):  # noqa: N802
         """Paint bars and keys."""
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.Antialiasing)
+        painter = theme.smooth_painter(self)
         for index, value in enumerate(self._axes):
             self._paint_axis(painter, index, value)
         for index, value in enumerate(self._buttons):
@@ -115,7 +114,7 @@ class PadPicture(QWidget):
                                 bar.height()), theme.colour(theme.DRIVE, palette))
 
     def _paint_button(self, painter, index, pressed):
-        """Paint one button: a key with its number, its meaning below."""
+        """Paint one button: a key with its number, and its meaning below."""
         unit, height, palette = self.fontMetrics().height(), self._key_px(), self.palette()
         row, column = divmod(index, _COLUMNS)
         cell = QRectF(column * self.width() / _COLUMNS,

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Finds the connected input devices without opening any of them.
 
-Everybody may read ``/sys/class/input``. So a message can name a device that may not be opened, and
-nobody opens an operator's keyboard just to look.
+Any user may read ``/sys/class/input``. So a message can name a device for which permission is
+missing, and an operator's keyboard is not opened just to identify it.
 """
 from dataclasses import dataclass
 import glob
@@ -16,10 +16,10 @@ from mhri.devices.pads import PadInfo
 
 SYS_INPUT = '/sys/class/input'
 DEV_INPUT = '/dev/input'
-# BTN_JOYSTICK to BTN_THUMBR (linux/input-event-codes.h): what pads have. Rudder pedals have none,
-# but a node of joydev.
+# BTN_JOYSTICK to BTN_THUMBR (linux/input-event-codes.h): the buttons of pads. Rudder pedals have
+# no buttons, but a joydev node.
 _PAD_KEYS = 0x120, 0x13f
-# The receiver of several pads shows each as another interface of its port; most have just 0.
+# A receiver for several pads has an interface of its port for each; most devices have only 0.
 _USB_PORT = re.compile(r'usb-.*-([\d.]+)(?:/input(?:0|(\d+)))?$')
 
 
@@ -27,8 +27,8 @@ _USB_PORT = re.compile(r'usb-.*-([\d.]+)(?:/input(?:0|(\d+)))?$')
 class Switch:
     """A device with keys: one or several event nodes that are plugged in and out together.
 
-    A foot switch shows a keyboard, often a mouse as well, since its pedals can be set to click;
-    ``paths`` are all of its nodes that have keys.
+    A foot switch appears as a keyboard, often as a mouse as well, since its pedals can be set to
+    click; ``paths`` are all of its nodes with keys.
     """
 
     usb: str
@@ -47,51 +47,50 @@ class _Node:
     uniq: str
 
     def device(self):
-        """Return what all nodes of one device have in common.
+        """Return the key shared by all nodes of one device.
 
-        ``phys`` is the port, with the interface behind the slash; a node without one (a virtual or
-        some Bluetooth device) is a device of its own unless it has a serial number.
+        ``phys`` is the port, with the interface after the slash; a node without one (a virtual or
+        some Bluetooth device) is a separate device unless it has a serial number.
         """
         return self.usb, self.phys.split('/')[0] or self.uniq or self.path
 
 
-def find_switches(sys_input=None, dev_input=None):
-    """Return every device with keys, in the order in which the kernel numbered them.
+def find_switches():
+    """Return every device with keys, in the order of the kernel's numbers.
 
-    :returns: list of :class:`Switch`; empty if the system shows no input devices
+    :returns: list of :class:`Switch`; empty if the system has no input devices
     """
-    nodes = [node for node in _nodes(sys_input or SYS_INPUT, dev_input or DEV_INPUT) if node]
     devices = {}
-    for node in nodes:
+    for node in _nodes():
         devices.setdefault(node.device(), []).append(node)
-    # The shortest name is that of the whole device: the others say "... Mouse", "... Keyboard".
+    # The shortest name is that of the whole device: the others end in "Mouse", "Keyboard" etc.
     return [Switch(members[0].usb, min((node.name for node in members), key=len),
                    tuple(node.path for node in members)) for members in devices.values()]
 
 
-def find_pads(sys_input=None):
+def find_pads():
     """Return a :class:`mhri.devices.pads.PadInfo` for each joystick, wheel or pad.
 
-    Its GUID is the one SDL derives from the kernel's data when SDL's own drivers are off.
+    Its GUID is the one that SDL derives from the kernel's data while SDL's own drivers are off.
     """
-    folders = [folder for _, folder in _folders(sys_input or SYS_INPUT)
+    folders = [folder for _, folder in _folders()
                if _has_keys(_line(folder, 'capabilities/key'), *_PAD_KEYS)
                or glob.glob(os.path.join(glob.escape(folder), 'js[0-9]*'))]
     return [PadInfo(index, _line(folder, 'name'), _guid(folder), _where(folder))
             for index, folder in enumerate(folders)]
 
 
-def where_is(path, sys_input=None):
-    """Return where the device with a file like ``/dev/input/event7`` is plugged in.
+def where_is(path):
+    """Return the port of the device with a file like ``/dev/input/event7``.
 
-    :returns: the same as ``where`` of :func:`find_pads`; '' if the system shows no such device
+    :returns: the same as ``where`` of :func:`find_pads`; '' if there is no such device
     """
-    folder = os.path.join(sys_input or SYS_INPUT, os.path.basename(path), 'device')
+    folder = os.path.join(SYS_INPUT, os.path.basename(path), 'device')
     return _where(folder) if os.path.isdir(folder) else ''
 
 
 def _where(folder):
-    """Return the port at this computer, else the device's own address or number, else its file."""
+    """Return the port of this computer, else the device's own address or number, else its file."""
     port = _USB_PORT.match(_line(folder, 'phys'))
     if port:
         return 'USB ' + '/'.join(filter(None, port.groups()))
@@ -99,38 +98,38 @@ def _where(folder):
 
 
 def _has_keys(words, first, last):
-    """Tell whether a bit map of the kernel has a key from first to last."""
+    """Return whether a bit map of the kernel has a key from first to last."""
     size = 8 * struct.calcsize('l')
     bits = sum(int(word, 16) << size * place for place, word in enumerate(reversed(words.split())))
     return bool(bits >> first & (1 << last - first + 1) - 1)
 
 
 def _guid(folder):
-    """Return SDL's GUID: each number with its lower byte first; '' for a device without numbers."""
+    """Return SDL's GUID: each number in little-endian order; '' for a device without numbers."""
     numbers = [_line(folder, 'id/' + word) for word in ('bustype', 'vendor', 'product', 'version')]
     if not all(re.match('[0-9a-fA-F]{4}$', number) for number in numbers) or numbers[1] == '0000':
         return ''
     return ''.join(number[2:] + number[:2] + '0000' for number in numbers).lower()
 
 
-def _folders(sys_input):
-    """Return (number, what the kernel says) of each event node, in order."""
+def _folders():
+    """Return (number, properties) of each event node, in order."""
     try:
-        names = os.listdir(sys_input)
+        names = os.listdir(SYS_INPUT)
     except OSError:
-        # No such folder: a system or container without any input device.
+        # A system or container without any input device.
         return []
     numbers = sorted(int(name[5:]) for name in names if re.match(r'event\d+$', name))
-    return [(number, os.path.join(sys_input, 'event{}'.format(number), 'device'))
+    return [(number, os.path.join(SYS_INPUT, 'event{}'.format(number), 'device'))
             for number in numbers]
 
 
-def _nodes(sys_input, dev_input):
+def _nodes():
     """Yield a node for each event node with keys."""
-    for number, folder in _folders(sys_input):
+    for number, folder in _folders():
         name = 'event{}'.format(number)
         if set(_line(folder, 'capabilities/key')) - set(' 0'):
-            yield _Node(os.path.join(dev_input, name), _usb(folder), _line(folder, 'name'),
+            yield _Node(os.path.join(DEV_INPUT, name), _usb(folder), _line(folder, 'name'),
                         _line(folder, 'phys'), _line(folder, 'uniq'))
 
 
@@ -141,10 +140,10 @@ def _usb(folder):
 
 
 def _line(folder, name):
-    """Return the one line of a file of the kernel, '' if it has gone or says nothing."""
+    """Return the single line of a kernel file, '' if it is gone or empty."""
     try:
         with open(os.path.join(folder, name), encoding='utf-8', errors='replace') as stream:
             return stream.readline().strip()
     except OSError:
-        # Unplugged while it was looked at: it is not there, which is what the others say of it.
+        # Unplugged meanwhile: treat it as absent.
         return ''

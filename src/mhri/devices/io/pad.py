@@ -1,34 +1,34 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The pad as an input device: which one, which profile, and its readings.
+"""The pad as an input device: choice of pad and profile, and its readings.
 
-Axes are raw, as SDL gives them, in [-1, 1]. Hats follow as two axes each (right +1, down +1) and as
-four buttons each (up, right, down, left), behind the axes and buttons that the device has.
+Axes are the raw values of SDL, in [-1, 1]. Hats follow as two axes each (right +1, down +1) and as
+four buttons each (up, right, down, left), after the axes and buttons of the device.
 """
 import logging
 import threading
 import time
 
 from mhri.devices.io.event_nodes import find_pads
-from mhri.devices.io.reader import DeviceAbsent, DeviceLost, Reader, Reading, Remembered
+from mhri.devices.io.reader import DeviceAbsent, DeviceLost, Reader, Reading, CachedLookup
 from mhri.devices.io.sdl import Joysticks
-from mhri.devices.pads import choose_pad, choose_profile, is_wanted, only_pads, tell_apart
+from mhri.devices.pads import choose_pad, choose_profile, is_chosen, only_pads, with_labels
 
 _LOG = logging.getLogger(__name__)
 
 RUMBLE_STRENGTH = 0.8
 RUMBLE_S = 0.5
-# How often to see which other pads there are.
+# Period of listing the other pads [s].
 LOOK_S = 2.0
 
 
 class PadReader(Reader):
-    """Opens the wanted pad and reads it; call :meth:`want` and :meth:`rumble` on any thread.
+    """Opens the wanted pad and reads it; call :meth:`choose` and :meth:`rumble` on any thread.
 
-    :param profiles: function returning every :class:`Profile` in the order of
-        preference; called whenever a pad is opened, so that a new profile needs no restart
+    :param profiles: function that returns every :class:`Profile` in the order of preference;
+        called whenever a pad is opened, so that a new profile needs no restart
     :param joysticks: stands in for :class:`mhri.devices.io.sdl.Joysticks`
-    :param clock: function returning seconds that never go back
+    :param clock: function that returns monotonic seconds
     """
 
     kind = 'pad'
@@ -46,12 +46,12 @@ class PadReader(Reader):
         self._rest = ()
         self._last = None
         self._choice = ''
-        self._there, self._look_at = (), 0.0
+        self._available, self._look_at = (), 0.0
         self.note = ''
         self.name = ''
-        self._find = Remembered(self._found)
+        self._find = CachedLookup(self._found)
 
-    def want(self, device):
+    def choose(self, device):
         """Choose the pad by a part of its name, its GUID or its index; '' is any pad.
 
         Takes effect within 50 ms: another open pad is treated like a lost one.
@@ -73,20 +73,20 @@ class PadReader(Reader):
         except LookupError as problem:
             raise DeviceAbsent(str(problem))
 
-    def there(self):
+    def available(self):
         """Name all connected pads; see :class:`mhri.devices.io.reader.Reader`."""
         now = self._clock()
         if now >= self._look_at:
             self._look_at = now + LOOK_S
-            pads = tell_apart(only_pads(
+            pads = with_labels(only_pads(
                 find_pads() if self._pad is None else self._joysticks.connected()))
-            self._there = tuple(pad.label for pad in pads)
+            self._available = tuple(pad.label for pad in pads)
             if self._pad is not None:
-                self._call_it(pads)
-        return self._there
+                self._update_name(pads)
+        return self._available
 
-    def _call_it(self, pads):
-        """Name the open pad as it is called among those that are there now."""
+    def _update_name(self, pads):
+        """Update the label of the open pad: it depends on the other pads."""
         own = self._pad.info
         self.name = next((pad.label for pad in pads if pad.full_name == own.full_name), self.name)
 
@@ -120,7 +120,7 @@ class PadReader(Reader):
         """Wait for a change; see :class:`mhri.devices.io.reader.Reader`."""
         deadline = self._clock() + timeout_s
         while True:
-            self._obey()
+            self._apply_requests()
             state = self._pad.state()
             if state != self._last and self._is_known(state[0]):
                 self._last = state
@@ -131,14 +131,14 @@ class PadReader(Reader):
                 return None
             self._pad.wait(left_s)
 
-    def _obey(self):
-        """Carry out the requests of other threads.
+    def _apply_requests(self):
+        """Apply the requests of other threads.
 
         :raises DeviceLost: another pad is wanted
         """
         if self._wanted != self._opened_for:
-            if (self._wanted.isdigit() or not is_wanted(self._wanted, self._pad.info)
-                    or self._wanted != self.name and self._wanted in self.there()):
+            if (self._wanted.isdigit() or not is_chosen(self._wanted, self._pad.info)
+                    or self._wanted != self.name and self._wanted in self.available()):
                 raise DeviceLost('another pad was chosen: {}'.format(self._wanted))
             self._opened_for = self._wanted
         if self._rumble.is_set():
@@ -147,7 +147,7 @@ class PadReader(Reader):
                 _LOG.debug('%s cannot rumble', self._pad.info.name)
 
     def _is_known(self, axes):
-        """Tell whether the values of the driving axes are known; an assumed 0 could drive."""
+        """Return whether the driving axes have reported; an assumed 0 could move a robot."""
         unknown = sorted({index for index in self._driving if axes[index] is None})
         self.note = 'move the stick once: nothing is known yet of axis {}'.format(
             ' and '.join(map(str, unknown))) if unknown else self._choice
@@ -162,7 +162,7 @@ class PadReader(Reader):
 
 
 def rest_of(profile, axis_count):
-    """Return the values of all axes while nobody touches the pad, () if they are all 0."""
+    """Return the values of all axes of a released pad, () if all are 0."""
     rest = [0.0] * axis_count
     for axis in (profile.forward, profile.turn):
         rest[axis.index] = axis.rest

@@ -7,6 +7,7 @@ import select
 import sys
 
 from mhri.base.config import ConfigError
+from mhri.base.io.files import whole
 from mhri.base.names import is_base_name
 from mhri.devices.calibration import Calibration, DONE, profile_name
 from mhri.devices.io.reader import DeviceAbsent, DeviceLost
@@ -18,7 +19,7 @@ LOOK_S = 0.01
 
 
 class Refused(Exception):
-    """The calibration ends without a profile; the text says why, and what to do."""
+    """The calibration ends without a profile; the text has the reason and the remedy."""
 
 
 def _options(argv):
@@ -33,14 +34,14 @@ def _options(argv):
 
 
 def calibrate(argv, folder, taken, joysticks=None, stdin=None):
-    """Ask, write ``<folder>/<name>.yaml`` and say where it is.
+    """Run the dialogue, write ``<folder>/<name>.yaml`` and print its path.
 
     :param argv: the command line, see ``mhri_joy --calibrate --help``
-    :param folder: made if missing
-    :param taken: names of profiles that may not be used
+    :param folder: created if missing
+    :param taken: names that are not allowed
     :param joysticks: stands in for :class:`mhri.devices.io.sdl.Joysticks`
     :param stdin: a stream with a file descriptor, for Enter
-    :returns: 0, or a text that says what went wrong
+    :returns: 0, or a description of the error
     """
     options = _options(argv)
     try:
@@ -63,7 +64,7 @@ def calibrate(argv, folder, taken, joysticks=None, stdin=None):
 def _calibrate(options, folder, taken, joysticks, stdin):
     """Calibrate; return the path.
 
-    :raises Refused: the name cannot be used, or the dialogue was ended
+    :raises Refused: the name cannot be used, or the dialogue was cancelled
     """
     info = choose_pad(options.device, joysticks.look(), [])
     name = options.name or profile_name(info.name)
@@ -80,38 +81,33 @@ def _calibrate(options, folder, taken, joysticks, stdin):
 
 
 def write_profile(path, text, replace):
-    """Write a profile completely or not at all, once it can be parsed; make its folder.
+    """Write a profile completely or not at all, after checking that it can be parsed.
 
-    :param replace: whether to replace an existing one
-    :raises FileExistsError: there is one that may not be replaced
-    :raises OSError: it cannot be written
-    :raises ConfigError: it is not a profile
+    The folder is created if missing.
+
+    :param replace: whether to replace an existing file
+    :raises FileExistsError: the file exists and must not be replaced
+    :raises OSError: the file cannot be written
+    :raises ConfigError: the text is not a profile
     """
     parse_profile(text, path)
-    os.makedirs(os.path.dirname(path), exist_ok=True)
-    part = path + '.new'
-    with open(part, 'w', encoding='utf-8') as stream:
-        stream.write(text)
-    try:
+    with whole(path) as part:
+        with open(part, 'w', encoding='utf-8') as stream:
+            stream.write(text)
         with open(part, encoding='utf-8') as stream:
             parse_profile(stream.read(), path)
         # Checked only now: another profile may have been written during the dialogue.
-        if replace:
-            os.replace(part, path)
-        else:
+        if not replace:
             os.link(part, path)
-    finally:
-        if os.path.exists(part):
-            os.remove(part)
 
 
 def _check(name, path, taken, force):
-    """Check the name before anybody has pressed anything.
+    """Check the name before the first question.
 
-    :raises Refused: it cannot be used
+    :raises Refused: the name cannot be used
     """
     if not is_base_name(name):
-        raise Refused('{!r} is no name for a profile: a letter, then letters, digits and _'.format(
+        raise Refused('{!r} cannot name a profile: use a letter, then letters, digits and _'.format(
             name))
     if name in taken:
         raise Refused('{} is the name of a shipped profile; choose another, for instance '
@@ -121,20 +117,20 @@ def _check(name, path, taken, force):
 
 
 def _ask(joysticks, info, calibration, stdin):
-    """Lead the dialogue to its end; return the profile's text.
+    """Run the dialogue to its end; return the profile's text.
 
     :raises Refused: the terminal was closed
     """
     pad = joysticks.open(info)
-    said = None
+    shown = None
     try:
         while calibration.step != DONE:
             calibration.feed(*pad.state())
-            if said != (calibration.step, calibration.problem):
-                said = (calibration.step, calibration.problem)
+            if shown != (calibration.step, calibration.problem):
+                shown = (calibration.step, calibration.problem)
                 print(' '.join(filter(None, (calibration.problem, calibration.prompt))), flush=True)
             if select.select([stdin], [], [], LOOK_S)[0]:
-                # Bytes, not lines: what a text stream has buffered, select does not see.
+                # Read bytes, not lines: select does not cover the buffer of a text stream.
                 pressed = os.read(stdin.fileno(), 4096)
                 if not pressed:
                     raise Refused('ended before the last question: nothing was written')

@@ -21,13 +21,11 @@ class PedalAxes:
 
     :param role: DRIVE or ENABLE
     :param joysticks: stands in for :class:`mhri.devices.io.sdl.Joysticks`
-    :param clock: function returning seconds that never go back
     """
 
-    def __init__(self, role=DRIVE, joysticks=None, clock=time.monotonic):
+    def __init__(self, role=DRIVE, joysticks=None):
         self._role = role
         self._joysticks = joysticks or Joysticks()
-        self._clock = clock
         self._infos = {}
         self._joystick = None
         self._profile = None
@@ -35,7 +33,7 @@ class PedalAxes:
         self._last = None
 
     def look(self):
-        """Return a :class:`Candidate` for each joystick that is connected.
+        """Return a :class:`Candidate` for each connected joystick.
 
         :raises DeviceAbsent: pygame or SDL cannot be used
         """
@@ -43,7 +41,7 @@ class PedalAxes:
         return list(self._infos)
 
     def open(self, candidate, profile):
-        """Open one of those that :meth:`look` has just returned.
+        """Open a candidate of the last :meth:`look`.
 
         :raises DeviceAbsent: it cannot be opened, or has too few axes
         """
@@ -60,29 +58,29 @@ class PedalAxes:
 
     @property
     def note(self):
-        """What the operator must do before every pedal counts, '' if nothing."""
+        """The operator's action needed before every pedal counts, or ''."""
         return self._state.note() if self._state else ''
 
     def read(self, timeout_s):
-        """Return the next reading; None while an axis has shown nothing yet.
+        """Return the next reading; None until every axis has reported.
 
         :raises DeviceLost: the pedals are gone
         """
         if self._joystick is None:
             raise DeviceLost('no pedals are open')
-        deadline = self._clock() + timeout_s
+        deadline = time.monotonic() + timeout_s
         while True:
             result = self._state.read(self._profile.from_axes(self._joystick.state()[0]))
             if result is not None and result != self._last:
                 self._last = result
-                return Reading(*result)
-            left_s = deadline - self._clock()
+                return Reading(*result, self._state.named)
+            left_s = deadline - time.monotonic()
             if left_s <= 0.0:
                 return None
             self._joystick.wait(left_s)
 
     def close(self):
-        """Give the pedals back; does nothing if none are open."""
+        """Release the pedals; does nothing if none are open."""
         joystick, self._joystick, self._last = self._joystick, None, None
         if joystick is not None:
             joystick.close()

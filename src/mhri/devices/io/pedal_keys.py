@@ -23,16 +23,16 @@ _REMEDY = ('permission denied. Put yourself into the group input (sudo usermod -
            'and log in anew, or install the rule resource/pedals/70-mhri-pedals.rules as '
            'doc/input_pedal.md says')
 
-# How long each reading stays the newest [s]: a little more than the shortest time between two
-# messages, so that none is replaced before it has been published.
+# Minimum duration of a reading [s]: a little more than the minimum period of messages, so that each
+# is published before the next replaces it.
 _HOLD_S = 0.012
 
 
 class _Node:
-    """One open event node of a switch, and which of its keys are down.
+    """One open event node of a switch, and its pressed keys.
 
-    It is grabbed as soon as no key is down: otherwise nobody else would see the release of a key
-    pressed before, and a desktop would repeat it without end.
+    It is grabbed as soon as no key is down: otherwise the desktop would miss the release of a key
+    pressed earlier, and repeat it endlessly.
     """
 
     def __init__(self, path):
@@ -49,11 +49,11 @@ class _Node:
             raise
 
     def fileno(self):
-        """Return what can be waited on."""
+        """Return the descriptor to poll."""
         return self._device.fd
 
     def reports(self):
-        """Read what has come; yield once for each complete report in which a key changed.
+        """Read the pending events; yield once for each complete report in which a key changed.
 
         :raises OSError: the device is gone (ENODEV), or another program has grabbed it (EBUSY)
         """
@@ -70,7 +70,7 @@ class _Node:
                     yield
 
     def _key(self, event):
-        """Take in a key; return whether its state changed. A 2 is a repetition, not a press."""
+        """Handle a key event; return whether its state changed. Value 2 is an auto-repeat."""
         before = len(self.down)
         if event.value == 1:
             self.down.add(event.code)
@@ -79,7 +79,7 @@ class _Node:
         return len(self.down) != before
 
     def _read_again(self):
-        """After lost events ask the kernel which keys are down; return whether that is a change."""
+        """After lost events read the pressed keys from the kernel; return whether they changed."""
         if not self._dropped:
             return False
         self._dropped = False
@@ -87,13 +87,13 @@ class _Node:
         return before != self.down
 
     def _grab(self):
-        """Grab the device for this program alone, once nothing is pressed."""
+        """Grab the device exclusively once nothing is pressed."""
         if not self._grabbed and not self.down:
             self._device.grab()
             self._grabbed = True
 
     def close(self):
-        """Close it, which also ends the grab."""
+        """Close the node, which also ends the grab."""
         self._device.close()
 
 
@@ -101,12 +101,10 @@ class PedalKeys:
     """The foot switches of this computer, one of which may be open.
 
     :param role: DRIVE or ENABLE
-    :param clock: function returning seconds that never go back
     """
 
-    def __init__(self, role=DRIVE, clock=time.monotonic):
+    def __init__(self, role=DRIVE):
         self._role = role
-        self._clock = clock
         self._nodes = []
         self._profile = None
         self._state = None
@@ -124,7 +122,7 @@ class PedalKeys:
     def open(self, candidate, profile):
         """Open and grab a switch.
 
-        :raises DeviceAbsent: it may not be opened, is grabbed by another, or gone by now
+        :raises DeviceAbsent: permission is missing, another program has grabbed it, or it is gone
         """
         self.close()
         self._codes = key_codes(profile)
@@ -141,24 +139,25 @@ class PedalKeys:
 
     @property
     def note(self):
-        """What the operator must do before every pedal counts, '' if nothing."""
+        """The operator's action needed before every pedal counts, or ''."""
         return self._state.note() if self._state else ''
 
     def _take(self):
-        """Turn what is held now into a reading, and queue it if it is new."""
+        """Convert the pressed keys to a reading, and queue it if it is new."""
         held = set().union(*(node.down for node in self._nodes))
         names = {name for name, code in self._codes.items() if code in held}
         axes, buttons = self._state.read(self._profile.from_keys(names))
-        reading = Reading(axes, buttons)
+        reading = Reading(axes, buttons, self._state.named)
         if reading != self._last:
             self._last = reading
             self._queue(reading)
 
     def _queue(self, reading):
-        """Keep a reading until it is asked for, and one that was left behind by it.
+        """Queue a reading behind at most one other.
 
-        However fast a pedal chatters, what it shows now is never more than one reading away. Of
-        those in between the first is kept; under a foot rather one with everything released.
+        However fast a pedal chatters, its present state is at most one reading away. Of the
+        readings in between the first is kept; while pressed, preferably one with everything
+        released.
         """
         if len(self._waiting) == 2:
             first, second = self._waiting
@@ -167,33 +166,33 @@ class PedalKeys:
             self._waiting = [second if lifted else first]
         self._waiting.append(reading)
         while self._waiting and self._waiting[0] in [self._given] + self._waiting[1:]:
-            # No news any more: what lay in between has been left out.
+            # A repetition, since the readings in between were dropped.
             del self._waiting[0]
 
     def read(self, timeout_s):
-        """Return the next reading, even one that lasted shorter than a message.
+        """Return the next reading, even one shorter than the period of messages.
 
-        :raises DeviceLost: the switch is gone, or was taken away by another program
+        :raises DeviceLost: the switch is gone, or another program has grabbed it
         """
         if not self._nodes:
             raise DeviceLost('no foot switch is open')
-        deadline = self._clock() + timeout_s
+        deadline = time.monotonic() + timeout_s
         self._wait(0.0)
-        while not self._due() and self._clock() < deadline:
+        while not self._due() and time.monotonic() < deadline:
             until = min(deadline, self._next_at) if self._waiting else deadline
-            self._wait(until - self._clock())
+            self._wait(until - time.monotonic())
         if not self._due():
             return None
-        self._next_at = self._clock() + _HOLD_S
+        self._next_at = time.monotonic() + _HOLD_S
         self._given = self._waiting.pop(0)
         return self._given
 
     def _due(self):
-        """Tell whether a reading can be returned."""
-        return bool(self._waiting) and self._clock() >= self._next_at
+        """Return whether a reading can be returned."""
+        return bool(self._waiting) and time.monotonic() >= self._next_at
 
     def _wait(self, timeout_s):
-        """Wait for the nodes, and take in what they say."""
+        """Wait for the nodes, and handle their reports."""
         poller = select.poll()
         nodes = {node.fileno(): node for node in self._nodes}
         for number in nodes:
@@ -213,7 +212,7 @@ class PedalKeys:
                     else 'cannot be read any more: ' + _reason(error)))
 
     def close(self):
-        """Give the switch back to the desktop; forget its state."""
+        """Release the switch to the desktop, and forget its state."""
         for node in self._nodes:
             node.close()
         self._nodes = []
@@ -225,7 +224,7 @@ class PedalKeys:
 def key_codes(profile):
     """Return {name: code} of all keys of a profile.
 
-    :raises DeviceAbsent: the kernel knows no key of that name
+    :raises DeviceAbsent: the kernel has no key with that name
     """
     names = [name for pedal in profile.pedals for name in pedal.keys]
     for name in names:
@@ -236,7 +235,7 @@ def key_codes(profile):
 
 
 def _reason(error):
-    """Return why a device could not be opened, and what to do about it."""
+    """Return why a device could not be opened, and the remedy."""
     if error.errno in (errno.EACCES, errno.EPERM):
         return _REMEDY
     if error.errno == errno.EBUSY:

@@ -6,21 +6,21 @@ from typing import Tuple
 
 
 class DeviceAbsent(Exception):
-    """No device can be opened; the text says what was wanted, and the remedy."""
+    """No device can be opened; the text has the request and the remedy."""
 
 
 class DeviceLost(Exception):
-    """The open device is gone, or must not be used any longer; the text says why."""
+    """The open device is gone, or must not be used any longer; the text is the reason."""
 
 
 @dataclass(frozen=True)
 class Reading:
-    """The whole state of a device: what a ``sensor_msgs/Joy`` carries.
+    """The whole state of a device, as in a ``sensor_msgs/Joy``.
 
-    ``axes`` are finite, as the driver gives them; ``buttons`` are 0 or 1. ``profile`` is the name
-    of the profile that says what they mean ('' if the source's row says it). ``rest`` are the
-    values of the axes while nobody touches the device, () if all of them rest at 0: a trigger rests
-    at -1, and at 0 it would be half pressed.
+    ``axes`` are the finite values of the driver; ``buttons`` are 0 or 1. ``profile`` is the name
+    of the profile with their meanings ('' if the source's row has them). ``rest`` are the values of
+    the axes of a released device, () if all rest at 0: a trigger rests at -1, and at 0 it would be
+    half pressed.
     """
 
     axes: Tuple[float, ...]
@@ -29,17 +29,17 @@ class Reading:
     rest: Tuple[float, ...] = ()
 
     def neutral(self):
-        """Return the reading of the same device with nothing touched."""
+        """Return the reading of the same device while released."""
         rest = self.rest + (0.0,) * (len(self.axes) - len(self.rest))
         return Reading(rest[:len(self.axes)], (0,) * len(self.buttons), self.profile, self.rest)
 
 
 class Reader:
-    """A device that is read on one thread: call every method only on that thread.
+    """A device that is read on one thread: call all methods only on that thread.
 
     ``kind`` is the word for it in messages, e.g. 'pad'; ``name`` is the open device's own name,
-    e.g. 'Logitech Gamepad F710'; ``note`` is what the operator should know about it ('': nothing),
-    e.g. that it waits for something.
+    e.g. 'Logitech Gamepad F710'; ``note`` is for the operator or '', e.g. that an axis has to be
+    moved once.
     """
 
     kind = 'device'
@@ -47,36 +47,36 @@ class Reader:
     note = ''
 
     def find(self):
-        """Return the name of the device that :meth:`open` would open, without touching any.
+        """Return the name of the device that :meth:`open` would open, without opening any.
 
-        The node asks every two seconds while it is suspended, so this must cost next to nothing.
-        '' if unknown.
+        It is called every two seconds while the node is suspended, so it must be cheap. '' if
+        unknown.
 
-        :raises DeviceAbsent: there is none
+        :raises DeviceAbsent: no device can be opened
         """
         return ''
 
-    def there(self):
+    def available(self):
         """Return the names of all devices that could be opened, () if unknown.
 
-        Asked as often as :meth:`find`, and with each reading.
+        It is called as often as :meth:`find`, and with each reading.
         """
         return ()
 
     def open(self):
         """Open the device and return a text that describes it; the next reading is complete.
 
-        :raises DeviceAbsent: there is none, or it cannot be opened
+        :raises DeviceAbsent: no device is connected, or it cannot be opened
         """
         raise NotImplementedError
 
     def read(self, timeout_s):
         """Wait for a change.
 
-        :param timeout_s: at most this long [s]; 0.0: only look
-        :returns: a :class:`Reading`, or None if nothing changed, or the device's state is not
+        :param timeout_s: maximum time [s]; 0.0: return at once
+        :returns: a :class:`Reading`, or None if nothing has changed or the device's state is not
             known yet
-        :raises DeviceLost: it is gone; close and open it again
+        :raises DeviceLost: the device is gone; close and open it again
         """
         raise NotImplementedError
 
@@ -85,10 +85,10 @@ class Reader:
         raise NotImplementedError
 
 
-class Remembered:
-    """A function called again only when its argument has changed.
+class CachedLookup:
+    """A function that is called again only when its argument has changed.
 
-    :param function: may raise :class:`DeviceAbsent`, which is remembered, too
+    :param function: may raise :class:`DeviceAbsent`, which is cached, too
     """
 
     def __init__(self, function):
@@ -97,9 +97,9 @@ class Remembered:
         self._answer = None
 
     def __call__(self, *question):
-        """Return the answer to a question.
+        """Return the result of the function.
 
-        :raises DeviceAbsent: the function did so
+        :raises DeviceAbsent: the function raised it
         """
         if question != self._asked:
             try:

@@ -1,10 +1,11 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Joysticks as SDL shows them, through pygame 1.9.6 (SDL 1.2) and 2.x (SDL 2).
+"""Joysticks by SDL, through pygame 1.9.6 (SDL 1.2) and 2.x (SDL 2).
 
-pygame does not say whether an axis has reported yet, nor whether a pad is still attached. So if it
-runs on SDL 2, this module also asks that library, through ctypes. Otherwise an axis is known from
-its first event on, and a pad is gone when its file in /dev/input is.
+pygame does not provide whether an axis has reported yet, whether a pad is still attached, or its
+port, and provides name and GUID only for an opened pad. If it runs on SDL 2, this module therefore
+also calls that library through ctypes. Otherwise an axis is known from its first event on, and a
+pad is gone when its file in /dev/input is.
 """
 import ctypes
 from dataclasses import replace
@@ -17,19 +18,19 @@ from mhri.devices.io.event_nodes import find_pads, where_is
 from mhri.devices.io.reader import DeviceAbsent, DeviceLost
 from mhri.devices.pads import PadInfo
 
-# How often to look at a pad without a file to wait for (a virtual one) [s].
+# Polling period of a pad without a file to wait for (a virtual one) [s].
 POLL_S = 0.004
 _DEVICE_FILE = re.compile(r'/dev/(input/|hidraw)')
-# Not SDL2_image, _mixer, _ttf; Debian's is libSDL2-2.0.so.0, that of a wheel has a hash in between.
+# Not SDL2_image, _mixer, _ttf; Debian's is libSDL2-2.0.so.0, in a wheel the name has a hash.
 _LIBRARY = re.compile(r'\S*/libSDL2-2[^/_]*\.so[^/ \n]*')
 
 ENVIRONMENT = {
     'SDL_VIDEODRIVER': 'dummy',                   # events without a window
-    'SDL_JOYSTICK_ALLOW_BACKGROUND_EVENTS': '1',  # there is none that could have the focus
-    'SDL_NO_SIGNAL_HANDLERS': '1',                # SIGTERM and Ctrl-C are rospy's
+    'SDL_JOYSTICK_ALLOW_BACKGROUND_EVENTS': '1',  # no window can have the focus
+    'SDL_NO_SIGNAL_HANDLERS': '1',                # rospy handles SIGTERM and Ctrl-C
     'PYGAME_HIDE_SUPPORT_PROMPT': '1',
-    # The kernel's drivers alone: SDL's own number the axes and buttons of the same pad differently
-    # from version to version, and keep its file open while nobody reads it.
+    # Use only the kernel's drivers: SDL's own drivers number the axes and buttons of a pad
+    # differently in each version, and always keep its file open.
     'SDL_JOYSTICK_HIDAPI': '0',
 }
 
@@ -39,7 +40,7 @@ class _Guid(ctypes.Structure):
 
 
 def load_library():
-    """Return the SDL 2 that this process has loaded, with its types declared, or None."""
+    """Return the SDL 2 library loaded by this process, with its types declared, or None."""
     try:
         with open('/proc/self/maps', encoding='utf-8', errors='replace') as maps:
             found = _LIBRARY.search(maps.read())
@@ -73,7 +74,7 @@ def device_files():
     for name in os.listdir('/proc/self/fd'):
         try:
             path = os.readlink('/proc/self/fd/' + name)
-        except OSError:  # the folder's own descriptor, closed by now
+        except OSError:  # the folder's own descriptor, already closed
             continue
         if _DEVICE_FILE.match(path):
             found[int(name)] = path
@@ -83,7 +84,7 @@ def device_files():
 class Joysticks:
     """The joysticks of this computer; all calls on one thread.
 
-    SDL starts at the first look and stays: once a pad is closed it costs nothing.
+    SDL is started by the first :meth:`look` and stays loaded: with closed pads it costs nothing.
     """
 
     def __init__(self):
@@ -97,7 +98,7 @@ class Joysticks:
         """
         for name, value in ENVIRONMENT.items():
             os.environ.setdefault(name, value)
-        # The dummy is no default: with a real one SDL would want the screen.
+        # Override it in any case: with a real driver SDL would need a display.
         os.environ['SDL_VIDEODRIVER'] = 'dummy'
         try:
             import pygame
@@ -129,7 +130,7 @@ class Joysticks:
             self._start()
         pygame = self._pygame
         if pygame.get_sdl_version()[0] < 2:
-            # SDL 1.2 looks once, at its start.
+            # SDL 1.2 lists joysticks only once, at its start.
             pygame.joystick.quit()
             pygame.joystick.init()
         pygame.event.pump()
@@ -137,18 +138,18 @@ class Joysticks:
         return self._list()
 
     def connected(self):
-        """Return what :meth:`look` would, without touching anything; [] where SDL is too old."""
+        """Return the result of :meth:`look` without updating SDL; [] if SDL is too old."""
         if self._library is None:
             return []
         return self._list()
 
     def _list(self):
-        """Return all joysticks, each with its place."""
+        """Return all joysticks with their ports."""
         pads = [replace(pad, where=self._where(pad.index)) for pad in map(
             self._info, range(self._pygame.joystick.get_count()))]
         if all(pad.where for pad in pads):
             return pads
-        # An SDL that does not name their files has them in the kernel's order.
+        # An SDL version without their files lists them in the kernel's order.
         kernel = find_pads()
         places = {pad.name: iter([other.where for other in kernel if other.name == pad.name])
                   for pad in pads}
@@ -156,13 +157,13 @@ class Joysticks:
                         or self._number(pad.index)) for pad in pads]
 
     def _where(self, index):
-        """Return where a joystick is plugged in, '' if its file is not known."""
+        """Return the port of a joystick, '' if its file is unknown."""
         if not hasattr(self._library, 'SDL_JoystickPathForIndex'):
             return ''
         return where_is((self._library.SDL_JoystickPathForIndex(index) or b'').decode())
 
     def _number(self, index):
-        """Return the number that a joystick has for as long as it is there, '' if unknown."""
+        """Return the number of a joystick while it is connected, '' if unknown."""
         return 'number {}'.format(self._library.SDL_JoystickGetDeviceInstanceID(index) + 1) \
             if self._library else ''
 
@@ -176,7 +177,7 @@ class Joysticks:
         return PadInfo(index, joystick.get_name(), guid)
 
     def open(self, info):
-        """Return the open :class:`Joystick` that :meth:`look` has just listed.
+        """Open a joystick of the last :meth:`look`; return its :class:`Joystick`.
 
         :raises DeviceAbsent: it cannot be opened
         """
@@ -194,8 +195,8 @@ class Joysticks:
 class Joystick:
     """One open joystick, by :meth:`Joysticks.open`.
 
-    A hat appears twice: as two axes behind the device's own (right +1, down +1, as the kernel has
-    them) and as four buttons behind the device's own (up, right, down, left).
+    A hat appears twice: as two axes after the device's own (right +1, down +1, as in the kernel)
+    and as four buttons after the device's own (up, right, down, left).
     """
 
     def __init__(self, pygame, library, joystick, info, files):
@@ -208,7 +209,7 @@ class Joystick:
         self._hats = range(joystick.get_numhats())
         self._instance = joystick.get_instance_id() if hasattr(
             joystick, 'get_instance_id') else None
-        # Good for as long as the joystick is open, that is until close().
+        # Valid while the joystick is open, until close().
         self._pointer = library.SDL_JoystickFromInstanceID(self._instance) if library else None
         self._known = set()
         self._files = files
@@ -219,13 +220,13 @@ class Joystick:
 
     @property
     def axis_count(self):
-        """Number of axes, those of the hats included."""
+        """The number of axes, including those of the hats."""
         return len(self._axes) + 2 * len(self._hats)
 
     def state(self):
-        """Return (axes, buttons) now: axes in [-1, 1] or None if not known yet, buttons 0 or 1.
+        """Return the present (axes, buttons): axes in [-1, 1], None until known, buttons 0 or 1.
 
-        :raises DeviceLost: it is gone
+        :raises DeviceLost: the joystick is gone
         """
         self._pump()
         axes = [self._axis(index) for index in self._axes]
@@ -237,22 +238,22 @@ class Joystick:
         return tuple(axes), tuple(buttons)
 
     def _axis(self, index):
-        """Return the value of one axis, or None; SDL's lowest is a little below -1."""
+        """Return the value of one axis, or None; SDL's minimum is a little below -1."""
         if index not in self._known and not self._is_known(index):
             return None
         self._known.add(index)
         return max(-1.0, min(1.0, self._joystick.get_axis(index)))
 
     def _is_known(self, index):
-        """Tell whether an axis has reported; without SDL 2 its first event tells."""
+        """Return whether an axis has reported, without SDL 2 by its first event."""
         value = ctypes.c_int16()
         return bool(self._pointer) and bool(self._library.SDL_JoystickGetAxisInitialState(
             self._pointer, index, ctypes.byref(value)))
 
     def _pump(self):
-        """Let SDL read the device.
+        """Process the pending events of SDL.
 
-        :raises DeviceLost: it is gone
+        :raises DeviceLost: the joystick is gone
         """
         pygame = self._pygame
         for event in pygame.event.get():
@@ -262,7 +263,7 @@ class Joystick:
                 raise DeviceLost('it was unplugged or switched off')
         if self._pointer and not self._library.SDL_JoystickGetAttached(self._pointer):
             raise DeviceLost('it was unplugged or switched off')
-        # SDL 1.2 says nothing of it.
+        # SDL 1.2 does not report a removal.
         if not self._library and any(os.fstat(number).st_nlink == 0 for number in self._files):
             raise DeviceLost('its file in /dev/input is gone')
 
@@ -272,12 +273,12 @@ class Joystick:
         return getattr(event, 'joy', self.info.index) == self.info.index
 
     def wait(self, timeout_s):
-        """Wait, at most this long [s], until there may be something new.
+        """Wait, at most this long [s], for a possible change.
 
-        :raises DeviceLost: it is gone
+        :raises DeviceLost: the joystick is gone
         """
         if not self._files or self._idle:
-            # Idle: its file has more to tell than SDL reads, e.g. motion sensors.
+            # Rest: the file also has events that SDL does not read, e.g. of motion sensors.
             time.sleep(min(timeout_s, POLL_S))
             self._idle = False
             return
@@ -287,7 +288,7 @@ class Joystick:
         self._idle = bool(ready)
 
     def rumble(self, strength, seconds):
-        """Shake (strength 0 to 1); return whether the device can."""
+        """Rumble (strength 0 to 1); return whether the device supports it."""
         if not hasattr(self._joystick, 'rumble'):
             return False
         return bool(self._joystick.rumble(strength, strength, int(seconds * 1000)))

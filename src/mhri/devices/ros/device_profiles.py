@@ -5,8 +5,10 @@ import os
 
 from mhri.base.config import ConfigError
 from mhri.base.names import is_base_name
+from mhri.devices.pedals import NAMED
 from mhri.devices.profile import JoyRefused, parse_profile
 from mhri.devices.ros.pad_profiles import own_folder
+from mhri.devices.ros.pedal_profiles import PedalProfiles
 from mhri.graph.ros.resources import read_text, resource_path
 
 PREFIX = 'profile:'
@@ -15,9 +17,9 @@ PREFIX = 'profile:'
 class DeviceProfiles:
     """Reads the profiles that devices name in ``header.frame_id`` as ``profile:<name>``.
 
-    It reads a profile when it first hears the device, and again after another device was heard or
-    :meth:`forget` was called. Shipped names come from ``resource/pads``, all others from the
-    operator's own folder.
+    A profile is read at the first message of its device, and again after a message of another
+    device or a call of :meth:`forget`. Shipped profiles are in ``resource/pads``, all others in the
+    operator's own folder. ``profile:pedal:<name>`` is that of a foot pedal.
 
     :param dead_man: whether their dead-man buttons must be held
     """
@@ -30,8 +32,8 @@ class DeviceProfiles:
         """Return the :class:`Profile` of a message, None for the source's own.
 
         :param source: name of the source
-        :param frame_id: of the Joy; anything but ``profile:<name>`` asks for the source's own
-        :raises JoyRefused: there is no such profile, or it is unusable
+        :param frame_id: of the Joy; the source's own is used unless it is ``profile:<name>``
+        :raises JoyRefused: the profile is missing or unusable
         """
         if not frame_id.startswith(PREFIX):
             return None
@@ -46,12 +48,17 @@ class DeviceProfiles:
         return profile
 
     def forget(self):
-        """Read every profile anew when next asked for it."""
+        """Read every profile again at its next use."""
         self._newest = {}
 
 
 def _read(name):
-    """Return a profile, or why there is none (kept, so that asking again costs nothing)."""
+    """Return a profile, or the reason for its absence (cached, so that repeated use is cheap)."""
+    if name.startswith(NAMED):
+        pedals = PedalProfiles()().get(name[len(NAMED):])
+        return pedals.as_profile() if pedals else JoyRefused(
+            'unknown_profile', 'the device names the profile {!r}, which is missing here'.format(
+                name))
     if not is_base_name(name):
         return JoyRefused('unknown_profile', '{!r} is not the name of a profile'.format(name))
     path = resource_path('pads', name + '.yaml')

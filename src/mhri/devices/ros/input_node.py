@@ -1,15 +1,15 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The ROS side of every input device: suspended it costs nothing, lost it goes neutral at once.
+"""The ROS side of every input device: costs nothing while suspended, neutral at once when lost.
 
 Interfaces of the node (the names are passed in):
 
 - publishes ``sensor_msgs/Joy`` on its topic, on change (at most 100 Hz) and at 20 Hz;
-  ``header.frame_id`` is ``profile:<name>``, the profile that says what the axes mean, or ''; the
+  ``header.frame_id`` is ``profile:<name>``, the profile with the meanings of the axes, or ''; the
   last message of a device that is lost or suspended has `` lost`` appended
 - serves ``mhri/SetSuspended``; a node starts suspended
-- ``device_state`` beside the service (:mod:`mhri.devices.ros.device_state`): which device there is
-- ``/diagnostics`` at 1 Hz: which device is open, or why none is
+- ``device_state`` beside the service (:mod:`mhri.devices.ros.device_state`): the present device
+- ``/diagnostics`` at 1 Hz: the open device, or why none is open
 """
 import threading
 import time
@@ -23,7 +23,7 @@ from mhri.devices.publish_throttle import Pacer
 from mhri.devices.ros.device_state import DeviceState
 from mhri.graph.ros.diagnostics import publish_diagnostics
 from mhri.graph.ros.master_watch import MasterWatch
-from mhri.graph.ros.prompt import PromptPublisher
+from mhri.graph.ros.non_blocking import NonBlockingPublisher
 from mhri.srv import SetSuspended, SetSuspendedResponse
 
 SUSPENDED = 'suspended'
@@ -32,32 +32,32 @@ READING = 'reading'
 CLOSED = 'closed'
 
 LOOK_PERIOD_S = 1.0
-# How often a suspended node looks for its device [s].
+# Period at which a suspended node looks for its device [s].
 FIND_PERIOD_S = 2.0
 # Appended to header.frame_id of a device's last message: the mux then wants neutral before it
 # drives again.
 LOST = ' lost'
-# Silence after it [s], for listeners that go by time alone.
+# Silence after it [s], for subscribers that only detect losses by time-out.
 SILENCE_S = 1.0
 HANGING_S = 2.0
-# A driver that hangs keeps the node from ending for so long at most [s].
+# A hanging driver delays the end of the node by at most this [s].
 END_S = 0.1
-# How soon an idle node is found again after a restart of the master [s].
+# An idle node registers again within this time after a restart of the master [s].
 MASTER_PERIOD_S = 2.0
 
 
 class InputNode:
     """Reads a device on its own thread while resumed, and publishes the readings.
 
-    The service never waits for the device: it changes the state, sends the neutral Joy that ends
-    the old one, and lets the thread do the rest. A session is the time between two changes of the
-    state by the service; the node discards what a thread stuck in the driver brings back from an
-    older session.
+    The service never waits for the device: it changes the state, publishes the neutral Joy that
+    ends the old one, and leaves the rest to the thread. A session is the time between two changes
+    of the state by the service; a reading that a hanging driver returns for an older session is
+    discarded.
 
     :param reader: :class:`mhri.devices.io.reader.Reader`; used only on that thread
     :param topic: name of the ``sensor_msgs/Joy`` topic
     :param service: name of the ``mhri/SetSuspended`` service
-    :param clock: function returning seconds that never go back
+    :param clock: function that returns monotonic seconds
     """
 
     def __init__(self, reader, topic, service, clock=time.monotonic):
@@ -77,14 +77,14 @@ class InputNode:
         self._called_at = None
         self._silent_until = self._next_look = clock()
         self._diagnostics = None
-        self._there = DeviceState(self._service_name, self._kind)
+        self._device_state = DeviceState(self._service_name, self._kind)
         self._thread = threading.Thread(target=self._run, name='device', daemon=True)
         self.resumed = threading.Event()
-        self._joy = PromptPublisher(topic, Joy)
+        self._joy = NonBlockingPublisher(topic, Joy)
         self._watch = MasterWatch(period_s=MASTER_PERIOD_S)
 
     def start(self):
-        """Begin to serve, suspended; call it after ``rospy.init_node``."""
+        """Start serving, suspended; call it after ``rospy.init_node``."""
         rospy.on_shutdown(self.close)
         self._watch.start()
         self._thread.start()
@@ -92,7 +92,7 @@ class InputNode:
         self._diagnostics = publish_diagnostics({self._kind: self._diagnose})
 
     def close(self):
-        """Send the neutral Joy and release the device; return when the Joy has left the process."""
+        """Publish the neutral Joy and release the device; return once the Joy has been sent."""
         with self._changed:
             if self._state == CLOSED:
                 return
@@ -103,7 +103,7 @@ class InputNode:
         if self._thread.is_alive():
             self._thread.join(END_S)
 
-    def words(self):
+    def describe(self):
         """Return the state of the device, as in the service's answer."""
         with self._changed:
             if self._state == SUSPENDED:
@@ -121,7 +121,7 @@ class InputNode:
                 ': ' + self._words if self._words else '')
 
     def _hanging_s(self):
-        """Return how long an overdue call into the driver has taken [s]; 0.0 if none is overdue.
+        """Return the duration of an overdue call of the driver [s], 0.0 if none is overdue.
 
         Call it with the lock held.
         """
@@ -129,15 +129,15 @@ class InputNode:
         return age_s if age_s > HANGING_S else 0.0
 
     def _on_set_suspended(self, request):
-        """Serve the service; answers at once, whatever the driver does."""
+        """Handle a request; return at once, whatever the driver does."""
         with self._changed:
             if self._state == CLOSED:
-                return SetSuspendedResponse(False, self.words())
+                return SetSuspendedResponse(False, self.describe())
             if request.suspended and self._state != SUSPENDED:
                 self._enter(SUSPENDED)
             elif not request.suspended and self._state == SUSPENDED:
                 self._enter(LOOKING)
-            answer = SetSuspendedResponse(True, self.words())
+            answer = SetSuspendedResponse(True, self.describe())
         rospy.logdebug('%s: %s', self._service_name, answer.message)
         return answer
 
@@ -154,7 +154,7 @@ class InputNode:
         self._changed.notify_all()
 
     def _neutral(self):
-        """Send the one neutral Joy that ends the stream; call it with the lock held."""
+        """Publish the neutral Joy that ends the stream; call it with the lock held."""
         if self._last is not None:
             self._publish(self._last.neutral(), last=True)
             self._silent_until = self._clock() + SILENCE_S
@@ -162,17 +162,17 @@ class InputNode:
         self._pacer = Pacer()
 
     def _publish(self, reading, last=False):
-        """Publish one reading; call it with the lock held, so that nothing overtakes a neutral."""
+        """Publish a reading; call it with the lock held, so that nothing overtakes the neutral."""
         message = Joy(axes=reading.axes, buttons=reading.buttons)
         message.header.stamp = rospy.Time.now()
         message.header.frame_id = (
             'profile:' + reading.profile if reading.profile else '') + (LOST if last else '')
-        # The last word may be late, but must not be dropped.
+        # The last message may be late, but must not be dropped.
         self._joy.publish(message, urgent=last)
         self._published += 1
 
     def _run(self):
-        """Serve one session after the other."""
+        """Run one session after the other (the thread)."""
         while True:
             self._rest()
             with self._changed:
@@ -183,18 +183,18 @@ class InputNode:
             self._look(session)
 
     def _rest(self):
-        """Wait while suspended, and say now and then which device there is."""
+        """Wait while suspended; publish the present device every other second."""
         while True:
             with self._changed:
                 if self._state != SUSPENDED:
                     return
-            self._there.tell(*self._find(), self._reader.there())
+            self._device_state.publish(*self._find(), self._reader.available())
             with self._changed:
                 if self._state == SUSPENDED:
                     self._changed.wait(FIND_PERIOD_S)
 
     def _find(self):
-        """Return (the name of the device that would open, why there is none)."""
+        """Return (name of the device that would be opened, why there is none)."""
         try:
             return self._call(self._reader.find), ''
         except DeviceAbsent as reason:
@@ -207,7 +207,7 @@ class InputNode:
             return session == self._session
 
     def _call(self, method, *args):
-        """Call the driver, and note when the call began."""
+        """Call the driver, and record the start of the call."""
         with self._changed:
             self._called_at = self._clock()
         try:
@@ -217,9 +217,9 @@ class InputNode:
                 self._called_at = None
 
     def _look(self, session):
-        """Look for a device once a second and read it while it lasts, until the session ends.
+        """Look for a device once a second and read it until it is lost or the session ends.
 
-        This is the thread's guard: whatever a driver raises means that the device is lost.
+        This is the thread's guard: any exception of a driver means that the device is lost.
         """
         while self._pause(session):
             try:
@@ -232,18 +232,18 @@ class InputNode:
                 self._lose(session, 'the driver failed: {}: {}'.format(
                     type(error).__name__, error))
             finally:
-                self._give_back()
+                self._close_device()
             self._next_look = self._clock() + LOOK_PERIOD_S
 
     def _pause(self, session):
-        """Wait until it is time to look; return whether the session goes on."""
+        """Wait until the next look is due; return whether the session continues."""
         with self._changed:
             until = max(self._silent_until, self._next_look)
             while session == self._session and self._clock() < until:
                 self._changed.wait(until - self._clock())
             return session == self._session
 
-    def _give_back(self):
+    def _close_device(self):
         """Close the device, whatever its state."""
         try:
             self._call(self._reader.close)
@@ -252,20 +252,20 @@ class InputNode:
                           type(error).__name__, error)
 
     def _begin(self, session, device):
-        """Note that a device is open."""
+        """Handle that a device has been opened."""
         with self._changed:
             if session != self._session:
                 return
             self._state, self._device, self._words = READING, device, ''
-        self._there.tell(self._reader.name or device, '', self._reader.there())
+        self._device_state.publish(self._reader.name or device, '', self._reader.available())
         rospy.loginfo('reading %s', device)
 
     def _step(self, session):
-        """Wait for a change or the next repetition, and publish what is due."""
+        """Wait for a change or the next repetition, and publish the due state."""
         with self._changed:
             wait_s = self._pacer.due_in(self._clock())
             if self._pacer.holding_back and wait_s > 0.0 and session == self._session:
-                # Leave the driver alone until then: it would only coalesce the changes in between.
+                # Do not call the driver before then: the changes in between would be dropped.
                 self._changed.wait(wait_s)
                 wait_s = 0.0
         reading = self._call(self._reader.read, wait_s)
@@ -278,11 +278,11 @@ class InputNode:
             if due is not None:
                 self._publish(due)
                 self._last = due
-        self._there.tell(self._reader.name or self._device, self._reader.note,
-                         self._reader.there())
+        self._device_state.publish(self._reader.name or self._device, self._reader.note,
+                                   self._reader.available())
 
     def _lose(self, session, reason):
-        """Send the neutral Joy, and say once why."""
+        """Publish the neutral Joy, and log the reason once."""
         with self._changed:
             if session != self._session:
                 return
@@ -290,7 +290,7 @@ class InputNode:
             lost, new = self._state == READING, self._words != reason
             self._losses += lost
             self._state, self._words, self._device = LOOKING, reason, ''
-        self._there.tell('', reason, self._reader.there())
+        self._device_state.publish('', reason, self._reader.available())
         if lost:
             rospy.logwarn('the %s is lost: %s', self._kind, reason)
         elif new:
@@ -302,7 +302,7 @@ class InputNode:
             level = DiagnosticStatus.OK if self._state != LOOKING else DiagnosticStatus.WARN
             if self._hanging_s():
                 level = DiagnosticStatus.ERROR
-            words, state, device = self.words(), self._state, self._device
+            words, state, device = self.describe(), self._state, self._device
             profile = self._last.profile if self._last else ''
             published, losses = self._published, self._losses
         status.summary(level, words)

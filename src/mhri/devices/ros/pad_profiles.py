@@ -1,14 +1,14 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The files of all pad profiles: the operator's own before the shipped ones."""
-import glob
+"""Reads all pad profiles: the operator's own before the shipped ones."""
 import os
+from pathlib import Path
 
 import rospkg
 
 from mhri.base.config import ConfigError
 from mhri.devices.pads import load_profiles
-from mhri.graph.ros.resources import read_text, resource_path
+from mhri.graph.ros.resources import read_all, resource_path
 
 
 def own_folder():
@@ -18,34 +18,26 @@ def own_folder():
 
 def shipped_names():
     """Return the names of the shipped profiles; an operator's own must have another name."""
-    return {os.path.splitext(os.path.basename(path))[0]
-            for path in glob.glob(resource_path('pads', '*.yaml'))}
+    return {path.stem for path in Path(resource_path('pads')).glob('*.yaml')}
 
 
 def read_profiles():
-    """Return ([:class:`mhri.devices.profile.Profile`], [what is wrong with other files]).
+    """Return ([:class:`mhri.devices.profile.Profile`], [problems of other files]).
 
-    The first ones are preferred.
+    The profiles are in the order of preference.
     """
-    shipped = shipped_names()
-    files, problems = [], []
-    for path in (sorted(glob.glob(os.path.join(own_folder(), '*.yaml')))
-                 + sorted(glob.glob(resource_path('pads', '*.yaml')))):
-        name = os.path.splitext(os.path.basename(path))[0]
-        if name in shipped and path.startswith(own_folder()):
-            problems.append('{}: {} is the name of a shipped profile; rename the file'.format(
-                path, name))
-            continue
-        try:
-            files.append((name, path, read_text(path)))
-        except (OSError, ConfigError) as error:
-            problems.append(error)
-    profiles, errors = load_profiles(files)
-    return profiles, problems + errors
+    own, unread = read_all(own_folder())
+    shipped, missing = read_all(resource_path('pads'))
+    names = shipped_names()
+    taken = [path for path, _ in own if Path(path).stem in names]
+    profiles, errors = load_profiles([row for row in own if row[0] not in taken] + shipped)
+    return profiles, unread + missing + errors + [
+        ConfigError(path, 'name', 'is that of a shipped profile; rename the file')
+        for path in taken]
 
 
 def pad_profiles():
-    """Return every profile as :func:`read_profiles`; name others in the log once a minute."""
+    """Return the profiles of :func:`read_profiles`; log unusable files at most once a minute."""
     # Slow to import: the doctor reads profiles without it.
     import rospy
     profiles, problems = read_profiles()

@@ -1,21 +1,20 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The files of all pedal profiles: the operator's own before the shipped ones."""
+"""Reads all pedal profiles: the operator's own take precedence over the shipped ones."""
 import glob
 import os
 
 import rospkg
 import rospy
 
-from mhri.base.config import ConfigError
 from mhri.devices.pedals import load_pedal_profiles
-from mhri.graph.ros.resources import read_text, resource_path
+from mhri.graph.ros.resources import read_all, resource_path
 
 
 class PedalProfiles:
     """Reads ``$ROS_HOME/mhri/pedals/*.yaml`` and ``resource/pedals/*.yaml``.
 
-    It reads them anew only when one has changed, since it is called once a second to look for a
+    Files are read again only after a change, since it is called once a second in the search for a
     pedal.
     """
 
@@ -26,38 +25,28 @@ class PedalProfiles:
     def __call__(self):
         """Return {name: :class:`mhri.devices.pedals.PedalProfile`}.
 
-        Leave out an unusable file, and name it in the log once.
+        Unusable files are left out, and logged once.
         """
-        seen = [(path, _changed_at(path)) for path in _paths()]
+        folders = os.path.join(rospkg.get_ros_home(), 'mhri', 'pedals'), resource_path('pedals')
+        seen = [(path, _changed_at(path)) for folder in folders
+                for path in sorted(glob.glob(os.path.join(folder, '*.yaml')))]
         if seen != self._seen:
             self._seen = seen
-            self._profiles = _load([path for path, _ in seen])
+            self._profiles = _load(*folders)
         return self._profiles
 
 
-def _paths():
-    """Return the paths of all profiles, the more important first."""
-    folders = (os.path.join(rospkg.get_ros_home(), 'mhri', 'pedals'), resource_path('pedals'))
-    return [path for folder in folders for path in sorted(glob.glob(
-        os.path.join(folder, '*.yaml')))]
-
-
 def _changed_at(path):
-    """Return when a file last changed, None if it is gone."""
+    """Return the time of a file's last change, None if it is gone."""
     try:
         return os.stat(path).st_mtime_ns
     except OSError:
         return None
 
 
-def _load(paths):
-    """Return {name: profile} of the usable files."""
-    files, errors = [], []
-    for path in paths:
-        try:
-            files.append((path, read_text(path)))
-        except (OSError, ConfigError) as error:
-            errors.append(error)
+def _load(*folders):
+    """Return {name: profile} of the usable files; earlier folders take precedence."""
+    files, errors = read_all(*folders)
     profiles, wrong = load_pedal_profiles(files)
     for error in errors + wrong:
         rospy.logwarn('a pedal profile is left out: %s', error)

@@ -1,41 +1,43 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Examines the ROS system from this computer; others need only :func:`examine`.
+"""Examines the ROS system from this computer; the entry point is :func:`examine`.
 
-It disturbs nothing: it registers no node, sets no parameter, and hangs up after listening.
+It has no side effects: no node is registered, no parameter set, and connections are closed.
 """
 import os
 import time
 from dataclasses import replace
-import xmlrpc.client
 
 import rosgraph
 import rospkg
 
+from mhri.base.accessories import SERVICE
 from mhri.base.config import ConfigError
-from mhri.doctor.facts import Facts, Graph, REFUSED, SILENT, STRANGER, UNRESOLVED
+from mhri.doctor.accessories import types_of
+from mhri.doctor.facts import Facts, Graph, UNRESOLVED
 from mhri.doctor.host import find_on_host
 from mhri.doctor.judgement import diagnose, odd_ones
 from mhri.doctor.linked import links_of
 from mhri.doctor.robots import robots_of
-from mhri.doctor.ros.files import FilesLook
+from mhri.doctor.ros.files import look_at_files
 from mhri.doctor.ros.host import look_at_computer
-from mhri.doctor.ros.linked import LinkLook
+from mhri.doctor.ros.linked import ask_links, linked_of
 from mhri.doctor.ros.masters import look_elsewhere, parse_uri
-from mhri.doctor.ros.probe import Probe
-from mhri.doctor.system import GATES_STATE, muxes
+from mhri.doctor.ros.probe import Probe, state_of
+from mhri.doctor.system import muxes, STATE
+from mhri.graph.ros.parallel_calls import Answers
 from mhri.graph.ros.master_api import MasterApi, MasterError
 from mhri.graph.ros.messages import message_class, MessageMissing
 from mhri.graph.ros.resources import robot_types
 from mhri.robots.discovery import IgnoreList
-from mhri.robots.ros.look import shipped_ignore_list
+from mhri.robots.ros.graph_scan import shipped_ignore_list
 
-# Deadlines for asking the nodes and for all that is asked, counted from the start [s]: the rest of
-# the 3 s is for the judgement, the report, and the end of the program. An examination that began
-# late has less time, but never less than a living node needs to answer.
+# Deadlines of the first query of the nodes, and of all queries, from the start [s]: the rest of the
+# 3 s is for evaluation, report and exit. An examination that began late has less time, but at least
+# the time that a live node needs to respond.
 ASKED_S, END_S = 1.9, 2.6
-LEAST_S, LEAST_AGAIN_S = 0.8, 0.3
-# Programs that fight over a name take it from each other about once a second.
+MIN_S, MIN_AGAIN_S = 0.8, 0.3
+# Two programs with one name take it from each other about once a second.
 WATCH_S, WATCH_EACH_S = 1.5, 0.2
 _MASTER_S = 0.8
 
@@ -43,10 +45,10 @@ _MASTER_S = 0.8
 def examine(robots=(), environ=None, begun=None, watch_s=WATCH_S):
     """Examine the system (blocking, 3 s at most; never on the GUI thread).
 
-    :param robots: names of the robots to judge, () for all
-    :param environ: the environment to judge, default that of this program
-    :param begun: since when somebody has waited for it [s, monotonic], default now
-    :param watch_s: how long to watch whether programs take a name from each other [s]
+    :param robots: names of the robots to check, () for all
+    :param environ: the environment to check, default that of this program
+    :param begun: start of the caller's wait [s, monotonic], default now
+    :param watch_s: how long to watch for programs that take a name from each other [s]
     :returns: list of :class:`mhri.doctor.facts.Finding`: faults, warnings, then fine ones
     """
     begun = time.monotonic() if begun is None else begun
@@ -56,7 +58,7 @@ def examine(robots=(), environ=None, begun=None, watch_s=WATCH_S):
         types, errors = robot_types()
         ignore, faults = _ignore_list()
     except rospkg.ResourceNotFound:
-        # Without the workspace there are no templates to judge robots by: check it first.
+        # Checked first: without the workspace there are no templates for the robots.
         master = parse_uri(environ.get('ROS_MASTER_URI') or rosgraph.rosenv.DEFAULT_MASTER_URI)
         return find_on_host(Facts(computer=look_at_computer(environ, master.host), master=master))
     facts = replace(look(environ, types, ignore, begun, watch_s, robots, caller_id),
@@ -73,10 +75,10 @@ def _ignore_list():
 
 
 def look(environ, types, ignore, begun, watch_s, robots=(), caller_id='/mhri_doctor'):
-    """Return the :class:`Facts` of this moment (blocking, at most until 3 s after ``begun``)."""
+    """Return the current :class:`Facts` (blocking, at most until 3 s after ``begun``)."""
     master = parse_uri(environ.get('ROS_MASTER_URI') or rosgraph.rosenv.DEFAULT_MASTER_URI)
     computer = look_at_computer(environ, master.host)
-    facts = Facts(computer=computer, wanted=tuple(robots), caller_id=caller_id)
+    facts = Facts(computer=computer, requested=tuple(robots), caller_id=caller_id)
     if master.uri_problem:
         return _without_master(facts, master, begun)
     if not computer.addresses_of(master.host):
@@ -89,41 +91,46 @@ def look(environ, types, ignore, begun, watch_s, robots=(), caller_id='/mhri_doc
     facts = replace(facts, master=master, graph=graph)
     watch_until = min(time.monotonic() + watch_s, begun + END_S)
     known = robots_of(graph, types, ignore)
-    files, links = FilesLook(graph.parameters), LinkLook(links_of(graph))
-    asked = _deadline(begun + ASKED_S, LEAST_S)
+    notes, aside = links_of(graph), Answers()
+    aside.ask('files', look_at_files, graph.parameters)
+    ask_links(aside, notes)
+    asked = _deadline(begun + ASKED_S, MIN_S)
     facts = _ask_nodes(facts, known, uris, asked)
-    linked, keys = links.result(asked)
-    facts = replace(facts, linked=linked, keys=keys, **files.result(asked))
+    found = aside.by(asked)
+    linked, keys = linked_of(notes, found)
+    facts = replace(facts, linked=linked, keys=keys, **found.get('files', {}))
     if not muxes(facts):
         facts = replace(facts, master=replace(master, elsewhere=look_elsewhere(
             master, computer, caller_id, only_with_mux=True)))
-    facts = _look_again(facts, known, _deadline(begun + END_S, LEAST_AGAIN_S))
+    facts = _look_again(facts, known, _deadline(begun + END_S, MIN_AGAIN_S))
     return _watch_names(facts, watch_until)
 
 
-def _deadline(wanted, least_s):
+def _deadline(deadline, least_s):
     """Return a deadline, or a later one if that leaves too little time."""
-    return max(wanted, time.monotonic() + least_s)
+    return max(deadline, time.monotonic() + least_s)
 
 
 def _master_until(facts, deadline):
-    """Return the master, who has until a deadline to answer each question."""
+    """Return the master's API, with the time left until a deadline as timeout of each call."""
     return MasterApi(facts.caller_id, min(_MASTER_S, max(0.05, deadline - time.monotonic())),
                      facts.master.uri)
 
 
 def _without_master(facts, master, begun):
-    """Return the facts with a master that does not answer, and others that do."""
-    files = FilesLook({})
+    """Return the facts without a responding master, and with the other masters."""
+    aside = Answers()
+    aside.ask('files', look_at_files, {})
     facts = replace(facts, master=replace(master, elsewhere=look_elsewhere(
         master, facts.computer, facts.caller_id)))
-    return replace(facts, **files.result(_deadline(begun + ASKED_S, LEAST_AGAIN_S)))
+    found = aside.by(_deadline(begun + ASKED_S, MIN_AGAIN_S))
+    return replace(facts, **found.get('files', {}))
 
 
 def _ask_master(api, master):
     """Return (master, graph, {node: URI}); three requests.
 
-    :raises MasterError: no answer, or not a master's
+    :raises MasterError: no response, or not that of a master
     """
     begun = time.monotonic()
     graph = _graph(api)
@@ -133,9 +140,9 @@ def _ask_master(api, master):
 
 
 def _with_uris(api, graph):
-    """Return (graph, {node: URI}) of one moment; one request.
+    """Return a consistent (graph, {node: URI}); one request.
 
-    A node that left between two requests is in the graph but has no URI: leave it out of both.
+    A node that left between two requests is in the graph without a URI: drop it from both.
     """
     uris = _uris(api, graph)
     return graph.of(uris), uris
@@ -153,40 +160,36 @@ def _graph(api):
 
 
 def _uris(api, graph):
-    """Return {node: URI} where the master has a URI; one request."""
+    """Return {node: URI} of the nodes with a URI at the master; one request."""
     names = graph.nodes()
     answers = api.call_many([('lookupNode', name) for name in names]) if names else []
     return {name: uri for name, uri in zip(names, answers) if uri}
 
 
 def _why_not(master, error):
-    """Return the master with the reason why it does not answer."""
+    """Return the master with the reason why it does not respond."""
     cause = error.__context__
-    if isinstance(cause, ConnectionRefusedError):
-        state = REFUSED
-    elif isinstance(cause, xmlrpc.client.Error) or not isinstance(cause, OSError) \
-            or isinstance(cause, ConnectionError):
-        state = STRANGER
-    else:
-        state = SILENT
     detail = str(getattr(cause, 'strerror', None) or cause or error)
-    return replace(master, state=state, detail=detail)
+    return replace(master, state=state_of(cause), detail=detail)
 
 
 def _ask_nodes(facts, robots, uris, deadline):
-    """Ask every node at once; listen to the gates, and to odometry, IMU and scans of robots."""
+    """Query all nodes in parallel; listen to the mux, and to odometry, IMU and scans of robots."""
     probe = Probe(facts.caller_id, deadline, {
         topic: robot.template.no_return for robot in robots for topic in robot.topics('scan')})
     listened = {topic for robot in robots
-                if not facts.wanted or robot.candidate.name in facts.wanted
-                for topic in robot.topics('odometry', 'imu', 'scan')} | {GATES_STATE}
+                if not facts.requested or robot.candidate.name in facts.requested
+                for topic in robot.topics('odometry', 'imu', 'scan')} | {STATE}
     for name, uri in sorted(uris.items()):
         published = facts.graph.topics_of(name)[0]
         probe.ask(name, uri, [(topic, facts.graph.types.get(topic, ''), topic in listened)
                               for topic in published])
-    # Slow where they are not imported yet, so meanwhile.
+    # Meanwhile, since importing message types is slow.
     known = {kind: _own_md5(kind) for kind in {
         facts.graph.types.get(topic, '*') for topic in facts.graph.publishers} - {'', '*'}}
+    known.update((kind, _own_md5(kind, 'srv' if row.way == SERVICE and kind == row.type else 'msg'))
+                 for robot in robots for row in robot.template.accessories
+                 for kind in types_of(row))
     nodes, streams, resolved = probe.result()
     computer = replace(facts.computer, resolved=dict(facts.computer.resolved, **resolved))
     known.update((stream.type, _own_md5(stream.type)) for stream in streams
@@ -195,25 +198,25 @@ def _ask_nodes(facts, robots, uris, deadline):
                    unheard=probe.unheard, known=known)
 
 
-def _own_md5(kind):
-    """Return the md5 sum of a message type on this computer, None if the type is not here."""
+def _own_md5(kind, place='msg'):
+    """Return the md5 sum of a type of messages or services here, None if not installed."""
     try:
-        return message_class(kind)._md5sum
+        return message_class(kind, place)._md5sum
     except MessageMissing:
         return None
 
 
 def _look_again(facts, robots, deadline):
-    """Ask the master once more, and the nodes that looked odd."""
+    """Query the master and the suspicious nodes again."""
     try:
         odd = odd_ones(facts, robots)
         if odd:
-            time.sleep(0.25)  # time to connect, for programs that have only just started
+            time.sleep(0.25)  # time to connect, for programs that have just started
         graph = _graph(_master_until(facts, deadline))
         graph, uris = _with_uris(_master_until(facts, deadline), graph)
     except MasterError:
         return facts
-    probe = Probe(facts.caller_id, _deadline(deadline, LEAST_AGAIN_S))
+    probe = Probe(facts.caller_id, _deadline(deadline, MIN_AGAIN_S))
     for name in sorted(odd & set(uris)):
         probe.ask(name, uris[name])
     nodes = {name: replace(node, uri_later=uris.get(name, ''))
@@ -222,7 +225,7 @@ def _look_again(facts, robots, deadline):
 
 
 def _watch_names(facts, until):
-    """Return the facts with the nodes that register elsewhere meanwhile; keep asking to the end."""
+    """Poll the master until a time; return the facts with the changed URIs of nodes."""
     nodes = facts.nodes
     try:
         while not any(node.uri_later not in ('', node.uri) for node in nodes.values()):
@@ -234,5 +237,5 @@ def _watch_names(facts, until):
             nodes = {name: replace(node, uri_later=uris.get(name, ''))
                      for name, node in nodes.items()}
     except MasterError:
-        pass  # it has just ended: the facts from before still hold
+        pass  # the master has just ended: keep the earlier facts
     return replace(facts, nodes=nodes)

@@ -1,46 +1,34 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The doctor examines its own computer: variables, addresses, folders, packages."""
+"""Examines this computer: variables, addresses, folders, packages."""
 import importlib.util
 import os
 import shutil
 import socket
-import threading
 import time
 import xml.etree.ElementTree
 
-import netifaces
 import rospkg
 
 import mhri
 from mhri.camera import turbojpeg
 from mhri.doctor.facts import Computer, Folder, is_ipv4
+from mhri.graph.ros.addresses import own_addresses
+from mhri.graph.ros.parallel_calls import Answers
 from mhri.graph.ros.resources import package_path
 from mhri.recording.recording import ros_home
 
-# Debian packages of package.xml, and the Python module that each brings.
+# Debian packages of package.xml, and the Python module in each.
 _MODULES = {'python3-evdev': 'evdev', 'python3-numpy': 'numpy', 'python3-opencv': 'cv2',
             'python3-pygame': 'pygame', 'python3-pyqtgraph': 'pyqtgraph', 'python3-yaml': 'yaml'}
 _LIBRARIES = {'libturbojpeg': turbojpeg.load}
 _PROGRAMS = ('openssl',)
-# Optional: without rqt the panel has its own window; only a TurtleBot 2 runs nodelets.
+# Optional: without rqt the panel has its own window; only a TurtleBot 2 needs nodelets.
 _OPTIONAL = ('nodelet', 'rqt_gui', 'rqt_gui_py')
 
 
-def own_addresses():
-    """Return the IPv4 addresses of this computer's interfaces, read anew at each call."""
-    found = []
-    for interface in netifaces.interfaces():
-        try:
-            entries = netifaces.ifaddresses(interface).get(netifaces.AF_INET, ())
-        except ValueError:  # the interface is gone by now
-            continue
-        found += [entry['addr'] for entry in entries if 'addr' in entry]
-    return tuple(found)
-
-
 def resolve(host):
-    """Return the IPv4 addresses of a name (blocking, for long if no name server answers).
+    """Return the IPv4 addresses of a name (blocking, long if no name server responds).
 
     :returns: a tuple, or None if the name is unknown
     """
@@ -54,24 +42,19 @@ def resolve(host):
 def resolve_all(hosts, limit_s):
     """Return {name: addresses or None} of many names at once.
 
-    A name without an answer within the limit counts as unknown: nobody can work with it.
+    A name without a response within the limit counts as unknown.
     """
-    answers, threads = {}, []
+    answers = Answers()
     for host in set(hosts):
-        thread = threading.Thread(target=lambda name=host: answers.update({name: resolve(name)}),
-                                  daemon=True)
-        thread.start()
-        threads.append(thread)
-    deadline = time.monotonic() + limit_s
-    for thread in threads:
-        thread.join(max(0.0, deadline - time.monotonic()))
-    return {host: answers.get(host) for host in set(hosts)}
+        answers.ask(host, resolve, host)
+    found = answers.by(time.monotonic() + limit_s)
+    return {host: found.get(host) for host in set(hosts)}
 
 
 def route_ip(address):
-    """Return the local address from which packets to another one leave; None if there is no route.
+    """Return the local address of packets to another address; None without a route.
 
-    It sends nothing: connecting a UDP socket only looks at the routes.
+    Nothing is sent: connecting a UDP socket only looks up the route.
     """
     try:
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
@@ -82,7 +65,7 @@ def route_ip(address):
 
 
 def look_at_computer(environ, master_host, limit_s=1.0):
-    """Return the :class:`Computer` this runs on (blocking for ``limit_s`` [s] at most)."""
+    """Return the :class:`Computer` of this program (blocking for at most ``limit_s``)."""
     variables = {key: value for key, value in environ.items() if key.startswith('ROS_')}
     name = socket.gethostname()
     hosts = [name, variables.get('ROS_HOSTNAME'), variables.get('ROS_IP'), master_host]
@@ -108,7 +91,7 @@ def _folders(environ):
 
 
 def _folder(what, path):
-    """Return the state of a folder or, if it is missing, of the nearest one above it."""
+    """Return the state of a folder or, if missing, of its nearest existing parent."""
     place = path = os.path.abspath(os.path.expanduser(path))
     while not os.path.exists(place) and place != os.path.dirname(place):
         place = os.path.dirname(place)
@@ -127,7 +110,7 @@ def _folder(what, path):
 
 
 def _package_path():
-    """Return where ROS finds mhri, None if it does not."""
+    """Return the path at which ROS finds mhri, None if not found."""
     try:
         return os.path.realpath(package_path())
     except rospkg.ResourceNotFound:
@@ -157,7 +140,7 @@ def _packages(package_path):
 
 
 def _has_package(finder, name):
-    """Tell whether a ROS package is here; Debian splits some into parts without a package.xml."""
+    """Return whether a ROS package is installed; Debian splits some without a package.xml."""
     try:
         finder.get_path(name)
         return True
@@ -166,6 +149,6 @@ def _has_package(finder, name):
 
 
 def _has_module(name):
-    """Tell whether there is a Python module; an empty folder left behind is none."""
+    """Return whether a Python module is installed; an empty folder does not count."""
     spec = importlib.util.find_spec(name)
     return spec is not None and spec.origin is not None

@@ -1,15 +1,14 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The doctor looks for other masters than the configured one: those that programs here use."""
+"""Finds other masters than the configured one: those of programs on this computer."""
 import glob
 import os
-import threading
 import time
 from urllib.parse import urlsplit
 
 from mhri.doctor.facts import Master, SILENT
 from mhri.doctor.system import MODE
-from mhri.graph.ros.knock import knock
+from mhri.graph.ros.parallel_calls import Answers, connectable
 from mhri.graph.ros.master_api import MasterApi, MasterError
 
 DEFAULT_PORT = 11311
@@ -21,7 +20,7 @@ _PORT = (b'-p', b'--port')
 
 
 def parse_uri(uri):
-    """Return the :class:`Master` of a URI, with the URI's problem."""
+    """Return the :class:`Master` of a URI, with the problem of an invalid URI."""
     try:
         parts = urlsplit(uri.strip())
         host, port = parts.hostname or '', parts.port
@@ -37,11 +36,11 @@ def parse_uri(uri):
 
 
 def uris_in_use(folder='/proc'):
-    """Return the master URIs that programs on this computer were started with.
+    """Return the master URIs of the programs on this computer.
 
-    Of other users' programs it sees only masters, and only if their port is an argument.
+    Of other users' programs only masters are visible, and only if their port is an argument.
 
-    :param folder: where the kernel lists processes; only Linux has one
+    :param folder: the kernel's folder of processes; only exists on Linux
     """
     found = {}
     for path in glob.glob(os.path.join(folder, '[0-9]*')):
@@ -57,7 +56,7 @@ def uris_in_use(folder='/proc'):
 
 
 def _words(path, name):
-    """Return a process's arguments or environment, [] if it is another user's, or has ended."""
+    """Return a process's arguments or environment, [] if unreadable or ended."""
     try:
         with open(os.path.join(path, name), 'rb') as file:
             return file.read().split(b'\0')
@@ -81,33 +80,28 @@ def _others(master, computer, uris):
 
 
 def look_elsewhere(master, computer, caller_id, only_with_mux=False, uris=None):
-    """Return the URIs of other masters that answer, those with a mux first (blocking, 0.4 s).
+    """Return the URIs of other responding masters, those with a mux first (blocking, 0.4 s).
 
-    It tries those that programs on this computer use, and one at the usual port.
+    The candidates are the masters of programs on this computer, and one at the default port.
 
-    :param master: the :class:`Master` that did not serve
+    :param master: the unsuitable :class:`Master`
     :param computer: :class:`mhri.doctor.facts.Computer`
-    :param only_with_mux: leave out those without a mux
-    :param uris: the URIs to ask, default those in use
+    :param only_with_mux: whether to drop those without a mux
+    :param uris: the URIs to query, default those in use
     """
-    answers, threads = {}, []
-
-    def ask(uri):
-        """Note whether a master has a running mux; nothing if no master answers."""
-        try:
-            api = MasterApi(caller_id, LIMIT_S, uri)
-            muxes = dict(api.call('getSystemState')[0]).get(MODE, ())
-            nodes = api.call_many([('lookupNode', name) for name in muxes]) if muxes else []
-        except (MasterError, ValueError, TypeError):
-            return
-        answers[uri] = bool(knock([node for node in nodes if node], LIMIT_S))
-
+    answers = Answers()
     for uri in _others(master, computer, uris_in_use() if uris is None else uris):
-        threads.append(threading.Thread(target=ask, args=(uri,), daemon=True))
-        threads[-1].start()
-    deadline = time.monotonic() + LIMIT_S + 0.1
-    for thread in threads:
-        thread.join(max(0.0, deadline - time.monotonic()))
-    found = dict(answers)
+        answers.ask(uri, _has_mux, uri, caller_id)
+    found = {uri: has_mux for uri, has_mux in answers.by(
+        time.monotonic() + LIMIT_S + 0.1).items() if has_mux is not None}
     return tuple(sorted((uri for uri in found if found[uri] or not only_with_mux),
                         key=lambda uri: (not found[uri], uri)))
+
+
+def _has_mux(uri, caller_id):
+    """Return whether a master has a running mux, None if no master responds."""
+    try:
+        muxes = MasterApi(caller_id, LIMIT_S, uri).publisher_uris(MODE)
+    except (MasterError, ValueError, TypeError):
+        return None
+    return bool(connectable(muxes, LIMIT_S))

@@ -1,54 +1,58 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The doctor asks all nodes at once, each on its own thread, and listens to what they publish.
+"""Queries all nodes in parallel, each on its own thread, and subscribes to their topics.
 
-It registers nothing at the master. It asks for a topic as a subscriber does, and hangs up at once;
-it leaves pictures and point clouds alone, since a driver may start its sensor for them.
+Nothing is registered at the master. A topic is requested as by a subscriber, and closed soon after;
+pictures and point clouds are skipped, since a driver may start its sensor for them.
 """
-import http.client
 import re
-import select
 import socket
-import struct
 import threading
 import time
 from urllib.parse import urlsplit
 import xmlrpc.client
 
+from mhri.base.wire import Wire
 from mhri.doctor.facts import (
     ANSWERS, Connection, is_ipv4, LISTENED_S, Node, REFUSED, SILENT, STRANGER, Stream, UNRESOLVED)
 from mhri.doctor.ros.host import resolve
-from mhri.graph.ros.master_api import TimedTransport
+from mhri.graph.ros.master_api import ERRORS, TimedTransport
 from mhri.graph.ros.messages import installed_class, MessageMissing
 from mhri.recording.ros.raw_link import LinkError, RawLink
 
-# Not asked for: subscribing to them starts a camera, or brings megabytes.
+# Never subscribed: that would start a camera, or transfer megabytes.
 HEAVY = ('sensor_msgs/Image', 'sensor_msgs/CompressedImage', 'sensor_msgs/CameraInfo',
          'sensor_msgs/PointCloud2', 'sensor_msgs/PointCloud', 'stereo_msgs/DisparityImage',
          'theora_image_transport/Packet', 'nav_msgs/OccupancyGrid')
-GATES_STATE = 'mhri/GatesState'
-# These begin with a std_msgs/Header; the stamp is read from the bytes.
-STAMPED = ('nav_msgs/Odometry', 'sensor_msgs/Imu', GATES_STATE)
+DRIVE_STATE = 'mhri/DriveState'
+# Messages that begin with a std_msgs/Header; the stamp is read from the bytes.
+STAMPED = ('nav_msgs/Odometry', 'sensor_msgs/Imu', DRIVE_STATE)
 LISTEN_S = 0.6
-# Before the deadline, for what was heard to be noted [s].
+# Time before the deadline in which the messages received are recorded [s].
 NOTE_S = 0.05
 ENOUGH_SAMPLES = 25
 _QUESTIONS = ('getPid', 'getPublications', 'getSubscriptions', 'getBusInfo')
-_STAMP, _LENGTH = struct.Struct('<II'), struct.Struct('<I')
-# The number and the stamp of a header.
-_BEFORE_FRAME = 12
-# As rospy and roscpp write it, and rosnode reads it: "... to [192.0.2.7:40623 on socket 6]".
+# The format of rospy and roscpp, also parsed by rosnode: "... to [192.0.2.7:40623 on socket 6]".
 _OTHER_END = re.compile(r' to \[([0-9.]+):\d+ on socket ')
 
 
-class Probe:
-    """Asks nodes, each on a thread of its own, until a deadline.
+def state_of(error):
+    """Return the state of an address by the error of a call to it."""
+    if isinstance(error, ConnectionRefusedError):
+        return REFUSED
+    # A program that hangs up at once is not a node.
+    hangs_up = isinstance(error, ConnectionError) or not isinstance(error, OSError)
+    return STRANGER if hangs_up else SILENT
 
-    :param caller_id: the name under which to ask
-    :param deadline: when to be done [s, monotonic]
+
+class Probe:
+    """Queries nodes, each on a thread of its own, until a deadline.
+
+    :param caller_id: the caller id of the queries
+    :param deadline: end of all queries [s, monotonic]
     :param no_return: {topic of a scan: see :class:`mhri.base.robot_types.RobotType`}
-    ``unheard`` are, once there is a result, the topics to listen to for which no time was left, of
-    nodes that answer.
+    ``unheard`` are, after :meth:`result`, the topics of responding nodes for which there was no
+    time to listen.
     """
 
     def __init__(self, caller_id, deadline, no_return=None):
@@ -65,9 +69,9 @@ class Probe:
         self._asked = {}
 
     def ask(self, name, uri, topics=()):
-        """Begin to ask a node; returns at once.
+        """Start the query of a node; return at once.
 
-        :param topics: [(topic, type, listen)] to ask it for once it answers
+        :param topics: [(topic, type, listen)] to request once it has responded
         """
         host = _host_of(uri)
         with self._lock:
@@ -76,11 +80,11 @@ class Probe:
         self._start(self._run, name, uri, host, topics)
 
     def result(self):
-        """Wait for all answers, up to the deadline.
+        """Wait for all responses, up to the deadline.
 
         :returns: ({name: :class:`Node`}, [:class:`Stream`], {host name: addresses or None})
         """
-        # Those that listen are begun by those that ask.
+        # Threads that query start further ones that listen.
         for thread in self._threads:
             thread.join(max(0.0, self._deadline - time.monotonic()))
         with self._lock:
@@ -106,7 +110,7 @@ class Probe:
         with self._lock:
             self._nodes[name] = node
             self._ahead.update((topic, name) for topic, _, listen in topics if listen)
-        # Listening takes time: all at once, while the others are asked for.
+        # Listening takes time: start it first, in parallel with the requests of the others.
         for topic, kind, listen in sorted(topics, key=lambda item: not item[2]):
             if listen:
                 self._start(self._take, topic, kind, node, True)
@@ -126,7 +130,7 @@ class Probe:
                 self._ahead.discard((topic, node.name))
 
     def _find(self, host):
-        """Look a host up once, whoever asks first; tell whether it is known."""
+        """Resolve a host once, on the first call; return whether its name is known."""
         if is_ipv4(host):
             return True
         with self._lock:
@@ -144,7 +148,7 @@ class Probe:
             return bool(self._resolved[host])
 
     def _question(self, name, uri, host):
-        """Ask a node about itself and return the :class:`Node`."""
+        """Query a node, and return the :class:`Node`."""
         begun = time.monotonic()
         proxy = xmlrpc.client.ServerProxy(uri, transport=TimedTransport(self._left()))
         batch = xmlrpc.client.MultiCall(proxy)
@@ -156,23 +160,17 @@ class Probe:
             except xmlrpc.client.Fault:
                 # A node of another library, without system.multicall.
                 answers = [_value([proxy.getPid(self._caller_id)]), None, None, None]
-        except ConnectionRefusedError:
-            return Node(name, uri, host, REFUSED, 'refused')
-        except socket.timeout:
-            return Node(name, uri, host, SILENT, 'no answer in time')
-        except (xmlrpc.client.Error, http.client.HTTPException, ValueError, TypeError) as error:
-            return Node(name, uri, host, STRANGER, '{}: {}'.format(type(error).__name__, error))
-        except OSError as error:
-            # Something at the port hangs up at once: the computer is there, but no node.
-            state = STRANGER if isinstance(error, ConnectionError) else SILENT
-            return Node(name, uri, host, state, error.strerror or str(error))
+        except (*ERRORS, ValueError, TypeError) as error:
+            said = getattr(error, 'strerror', None) or '{}: {}'.format(type(error).__name__, error)
+            return Node(name, uri, host, state_of(error),
+                        'no answer in time' if isinstance(error, socket.timeout) else said)
         if answers[0] is None:
             return Node(name, uri, host, STRANGER, 'it does not know getPid')
         return Node(name, uri, host, ANSWERS, '', time.monotonic() - begun, _topics(answers[1]),
                     _topics(answers[2]), _connections(answers[3]))
 
     def _stream(self, topic, kind, node, listen):
-        """Connect to a topic, listen for a moment if wanted, and hang up."""
+        """Connect to a topic, listen for a moment if requested, and disconnect."""
         if kind in HEAVY:
             return Stream(topic, node.name, kind)
         try:
@@ -194,70 +192,62 @@ class Probe:
             link.close()
 
     def _listen(self, link, stamped):
-        """Return (number of messages, [(received, stamp)], newest frame) of the next moment."""
+        """Listen; return (number of messages, [(received, stamp)], newest frame)."""
         messages, samples, newest = 0, [], b''
         end = min(time.monotonic() + LISTEN_S, self._deadline - NOTE_S)
         while len(samples) < ENOUGH_SAMPLES and not (messages and not stamped):
-            ready = select.select([link], [], [], max(0.0, end - time.monotonic()))[0]
-            received = time.time()
-            if not ready:
-                break
             try:
-                frames = link.read()
+                frames = link.wait(end - time.monotonic())
             except LinkError:
+                break
+            received = time.time()
+            if not frames and time.monotonic() >= end:
                 break
             messages += len(frames)
             newest = frames[-1] if frames else newest
-            # Of messages that came together, only the newest was not kept waiting.
+            # Of messages received together, only the newest was not delayed.
             if stamped and frames and len(frames[-1]) >= 16:
-                seconds, nanoseconds = _STAMP.unpack_from(frames[-1], 8)
-                if seconds:
-                    samples.append((received, seconds + nanoseconds * 1e-9))
+                _, stamp_s = Wire('header', frames[-1][4:]).header()
+                if stamp_s >= 1.0:
+                    samples.append((received, stamp_s))
         return messages, samples, newest
 
 
-def _refused(fields, frame):
-    """Return what the gates refused, from a frame of their state, () for any other topic."""
-    if fields['type'] != GATES_STATE or not frame:
-        return ()
-    # Slow to import: only if there are gates.
+def _message(fields, frame, kind):
+    """Return the message of a frame, None if it is of another type, or of another version."""
+    if fields['type'] != kind or not frame:
+        return None
+    # Imported late since it is slow: only if there is such a topic.
     import genpy
-    from mhri.msg import GatesState
-    if fields['md5sum'] != GatesState._md5sum:
-        return ()
     try:
-        state = GatesState().deserialize(frame[4:])
-    except genpy.DeserializationError:
-        return ()
-    # Senders believed by now were refused only while still unknown.
-    return tuple(line for line in state.refused
-                 if line.partition(':')[0] not in (state.mux, state.operator))
+        return installed_class(kind, fields['md5sum'])().deserialize(frame[4:])
+    except (MessageMissing, genpy.DeserializationError):
+        return None
+
+
+def _refused(fields, frame):
+    """Return the refusals in a frame of the mux's state, () for any other topic."""
+    state = _message(fields, frame, DRIVE_STATE)
+    # The operator was only refused before it took control.
+    return () if state is None else tuple(
+        line for line in state.refused if line.partition(':')[0] != state.operator)
 
 
 def _frames(fields, frame):
-    """Return the frames that a frame of odometry names, () for any other topic."""
-    texts, at = [], _LENGTH.size + _BEFORE_FRAME
-    for _ in range(2 if fields['type'] == 'nav_msgs/Odometry' else 0):
-        if at + _LENGTH.size > len(frame):
-            return ()
-        begin = at + _LENGTH.size
-        at = begin + _LENGTH.unpack_from(frame, at)[0]
-        texts.append(frame[begin:at][:100].decode('utf-8', 'replace').lstrip('/'))
-    return tuple(texts)
+    """Return the frame ids in a message of odometry, () for any other topic."""
+    message = _message(fields, frame, 'nav_msgs/Odometry')
+    return () if message is None else tuple(
+        text[:100].lstrip('/') for text in (message.header.frame_id, message.child_frame_id))
 
 
 def _beams(fields, frame, no_return):
-    """Return (beams, measured, nothing there, perhaps nothing there) of a scan, () for others."""
-    if fields['type'] != 'sensor_msgs/LaserScan' or not frame:
+    """Return the number of (all, measured, free, ambiguous) beams of a scan, () for others."""
+    scan = _message(fields, frame, 'sensor_msgs/LaserScan')
+    if scan is None:
         return ()
-    # Slow to import: only if there are lasers.
-    import genpy
+    # Imported late since it is slow: only if there are lasers.
     import numpy
     from mhri.sensors.readings import no_return_of, read_ranges
-    try:
-        scan = installed_class(fields['type'], fields['md5sum'])().deserialize(frame[_LENGTH.size:])
-    except (MessageMissing, genpy.DeserializationError):
-        return ()
     readings = read_ranges(scan.ranges, scan.range_min, scan.range_max,
                            no_return_of(no_return, scan.range_max))
     return (len(scan.ranges),) + tuple(int(beams.sum()) for beams in (
@@ -265,7 +255,7 @@ def _beams(fields, frame, no_return):
 
 
 def _host_of(uri):
-    """Return the host of a URI, '' if there is none."""
+    """Return the host of a URI, '' without one."""
     try:
         return urlsplit(uri).hostname or ''
     except ValueError:
@@ -273,7 +263,7 @@ def _host_of(uri):
 
 
 def _value(item):
-    """Return the value in one answer of a multicall, None if it is not "success"."""
+    """Return the value in one response of a multicall, None without success."""
     if not isinstance(item, list) or not isinstance(item[0], (list, tuple)):
         return None
     answer = item[0]
@@ -281,7 +271,7 @@ def _value(item):
 
 
 def _topics(pairs):
-    """Return {topic: type} of a node's own list, None if it is not such a list."""
+    """Return {topic: type} of a node's own list, None if it is malformed."""
     try:
         return {str(name): str(kind) for name, kind in pairs}
     except (TypeError, ValueError):
@@ -289,7 +279,7 @@ def _topics(pairs):
 
 
 def _address(text):
-    """Return the IPv4 address in a node's text about a connection, '' if there is none."""
+    """Return the IPv4 address in a node's text about a connection, '' without one."""
     found = _OTHER_END.search(str(text))
     return found.group(1) if found and is_ipv4(found.group(1)) else ''
 

@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The screen's side of the faults: which robots are simulated, and what they say of their faults.
+"""The screen's client of faults: finds simulated robots and their active faults.
 
-Asks the master for ``/<robot>/base/set_fault`` (``mhri/SetFault``), which simulated robots alone
-have, and calls it. Everything that waits is on a worker.
+Looks up ``/<robot>/base/set_fault`` (``mhri/SetFault``) at the master, which only simulated robots
+provide, and calls it. All blocking calls run on a worker.
 """
 import queue
 
@@ -20,7 +20,7 @@ _SERVICE = '/{}/base/set_fault'
 
 
 class FaultsClient:
-    """Every method returns at once."""
+    """The client; every method returns at once."""
 
     def __init__(self):
         self._names = self._simulated = ()
@@ -29,35 +29,35 @@ class FaultsClient:
         self._worker = Worker('faults', self._look, LOOK_S).start()
 
     def follow(self, names):
-        """Look for these robots from now on."""
+        """Set the robots to check for simulated ones."""
         self._names = tuple(names)
 
     def watch(self, watched):
-        """Ask the robots again and again what fails, or no more."""
+        """Start or stop polling the active faults of the robots."""
         self._watched = watched
         self._worker.do(self._look)
 
     def simulated(self):
-        """Return the names of those that are simulated."""
+        """Return the names of the simulated robots."""
         return self._simulated
 
     def ask(self, robot, key, value, duration_s):
-        """Ask for a fault; see ``SetFault.srv``."""
+        """Request a fault; see ``SetFault.srv``."""
         self._worker.do(self._call, robot, key, value, duration_s)
 
     def take_news(self):
-        """Return [(robot, whether it did as asked, sentence)] since the last time."""
+        """Return the answers since the last call: [(robot, success, sentence)]."""
         news = []
         while not self._news.empty():
             news.append(self._news.get())
         return news
 
     def close(self):
-        """Ask nobody any more."""
+        """Stop polling."""
         self._worker.stop()
 
     def _look(self):
-        """See which robots are simulated; while somebody watches, ask what fails."""
+        """Find the simulated robots; while the page is open, poll their faults."""
         names = self._names
         if not names or not is_initialised():
             return

@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The files of drills: scenarios that are shipped, results of runs."""
+"""The files of drills: shipped scenarios, and results of runs."""
+from contextlib import suppress
 from datetime import datetime
 import os
 from pathlib import Path
@@ -9,12 +10,13 @@ from mhri.base.config import ConfigError
 from mhri.drill.results import as_yaml
 from mhri.drill.scenario import parse_scenario
 from mhri.graph.ros.resources import read_text, resource_path
+from mhri.recording.folder import folder_name, free_names
 from mhri.recording.recording import ros_home
 from mhri.session.drill_results import FILE, read_result
 
 PAGE = 'drill.html'
-# So many earlier runs stand beside a new one; a result says early which drill it is of.
-MOST_EARLIER, _HEAD_BYTES = 3, 4096
+# Maximum number of earlier runs to compare with; a result names its drill within this many bytes.
+MAX_EARLIER, _HEAD_BYTES = 3, 4096
 
 
 def names():
@@ -25,8 +27,8 @@ def names():
 def scenario_named(name):
     """Return (:class:`mhri.drill.scenario.Scenario`, path of its plan).
 
-    :param name: of a shipped drill, or the path of a lab's own file, its plan in ``plans`` beside
-    :raises ConfigError: there is none, or it is wrong
+    :param name: name of a shipped drill, or path of a lab's own file with ``plans`` beside it
+    :raises ConfigError: the drill does not exist, or is invalid
     :raises OSError: the file cannot be read
     """
     path = name if name.endswith('.yaml') else resource_path('drills', name + '.yaml')
@@ -38,54 +40,46 @@ def scenario_named(name):
 
 
 def _session_now():
-    """Return the folder of a session that is being recorded now, None if there is none."""
+    """Return the folder of the session being recorded, None if there is none."""
     home = Path(ros_home(os.environ)) / 'mhri' / 'sessions'
     active = [path for path in home.glob('*/*.bag.active')]
     return max(active, key=lambda path: path.stat().st_mtime).parent if active else None
 
 
-def folder_of(scenario, rehearsed=False, when=None):
-    """Make and return the folder for what comes of a run: the session's, else one of its own.
+def folder_of(scenario, rehearsed=False):
+    """Return the folder for the result of a run: the current session's, else a new one.
 
-    :param rehearsed: nothing of it was on the graph, nor is it in a session
-    :raises OSError: it cannot be made
+    :param rehearsed: the run was not on the graph, so it is not part of a session
+    :raises OSError: the folder cannot be created
     """
     session = None if rehearsed else _session_now()
     if session is not None:
         return session
-    name = '{:%Y-%m-%d-%H-%M-%S}_{}'.format(when or datetime.now(), scenario.name)
-    home, number = Path(ros_home(os.environ)) / 'mhri' / 'drills', 1
-    while True:
-        path = home / (name if number == 1 else '{}-{}'.format(name, number))
-        try:
-            path.mkdir(parents=True)
-            return path
-        except FileExistsError:
-            number += 1
+    home = Path(ros_home(os.environ)) / 'mhri' / 'drills'
+    for name in free_names('{}_{}'.format(folder_name(datetime.now()), scenario.name)):
+        with suppress(FileExistsError):
+            (home / name).mkdir(parents=True)
+            return home / name
 
 
 def write(folder, result, page):
-    """Write result and page, over nothing that is there; return the path of the page.
+    """Write result and page under free names; return the path of the page.
 
-    :raises OSError: they cannot be written
+    :raises OSError: a file cannot be written
     """
-    number = 1
-    while True:
-        more = '' if number == 1 else '-{}'.format(number)
-        target = folder / FILE.replace('.', more + '.')
-        try:
-            with open(target, 'x', encoding='utf-8') as file:
+    stem, ending = os.path.splitext(FILE)
+    for name in free_names(stem):
+        with suppress(FileExistsError):
+            with open(folder / (name + ending), 'x', encoding='utf-8') as file:
                 file.write(as_yaml(result))
             break
-        except FileExistsError:
-            number += 1
-    path = folder / PAGE.replace('.', more + '.')
+    path = folder / PAGE.replace(stem, name)
     path.write_text(page, encoding='utf-8')
     return path
 
 
 def earlier(scenario):
-    """Return the results of the last runs of a drill, the newest first."""
+    """Return the results of the last runs of a drill, newest first."""
     home = Path(ros_home(os.environ)) / 'mhri'
     pattern = FILE.replace('.', '*.')
     paths = [*home.glob('drills/*/' + pattern), *home.glob('sessions/*/' + pattern)]
@@ -97,7 +91,7 @@ def earlier(scenario):
                     found.append(result_in(str(path)))
         except (ConfigError, OSError):
             continue
-        if len(found) == MOST_EARLIER:
+        if len(found) == MAX_EARLIER:
             break
     return found
 
@@ -105,9 +99,9 @@ def earlier(scenario):
 def result_in(path):
     """Return the result of a run.
 
-    :param path: its ``drill.yaml``, or the folder
-    :raises ConfigError: it is none
-    :raises OSError: it cannot be read
+    :param path: path of its ``drill.yaml``, or of the folder
+    :raises ConfigError: the file is not a result
+    :raises OSError: the file cannot be read
     """
     path = os.path.join(path, FILE) if os.path.isdir(path) else path
     return read_result(read_text(path), path)

@@ -1,11 +1,11 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The scripted operator on the graph: sees what a screen sees, and drives as a screen does.
+"""The scripted operator on the graph, which uses the data and topics of a screen.
 
 Publishes ``/mux_in/joy`` (``sensor_msgs/Joy``), ``/robot_controller/robot_select``
-(``mhri/RobotSelect``, repeated as the lease asks) and ``/mux_in/mode_select``. Subscribes ``/tf``,
-``/<robot>/scan`` (``sensor_msgs/LaserScan``), ``/mux/waits_for`` and ``/gates/state``. Takes
-control by ``/gates/take_control`` if another screen has it.
+(``mhri/RobotSelect``, repeated to renew the lease) and ``/mux_in/mode_select``. Subscribes ``/tf``,
+``/<robot>/scan`` (``sensor_msgs/LaserScan``) and ``/mux/state``. Takes control by
+``/mux/take_control`` if another screen has it.
 """
 import math
 import threading
@@ -13,27 +13,25 @@ import time
 
 import rospy
 from sensor_msgs.msg import Joy, LaserScan
-from std_msgs.msg import String
 from std_srvs.srv import Trigger
 from tf2_msgs.msg import TFMessage
 
-from mhri.base.mocap import Pose
+from mhri.base.geometry import composed, Pose
 from mhri.drill.operator import Act, ahead_of, RATE_HZ, ScriptedOperator, Seen
-from mhri.map.places import composed
-from mhri.msg import ControlMode, GatesState, RobotGate, RobotSelect
+from mhri.msg import ControlMode, DriveState, RobotDrive, RobotSelect
+from mhri.robots.ros.convert import yaw_of
 
 LEASE_S = 0.5
-# Without a scan for so long nothing is known of what is ahead [s].
+# Older scans are ignored [s].
 SCAN_S = 1.0
 
 
 def _pose(transform):
-    turn = transform.rotation
-    return Pose(transform.translation.x, transform.translation.y, 2.0 * math.atan2(turn.z, turn.w))
+    return Pose(transform.translation.x, transform.translation.y, yaw_of(transform.rotation))
 
 
 class _Eye:
-    """What is known of one robot: two transforms and a scan, and when they came."""
+    """The data of one robot: two transforms and a scan, with their receipt times."""
 
     def __init__(self, name, front_m):
         self._front_m = front_m
@@ -53,7 +51,7 @@ class _Eye:
         self._scanned_at = time.monotonic()
 
     def seen(self):
-        """Return the robot as the operator sees it, None before anything was heard."""
+        """Return the robot as known to the operator, None before both transforms are known."""
         parts, now = self._parts, time.monotonic()
         if len(parts) < 2:
             return None
@@ -63,34 +61,33 @@ class _Eye:
 
 
 class ScriptedHands:
-    """Looks and acts on a thread of its own, from :meth:`start` on until every robot has arrived.
+    """Drives on its own thread, from :meth:`start` until every robot has arrived.
 
     :param scenario: :class:`mhri.drill.scenario.Scenario`
-    :param fronts_m: {robot: from its laser to its front [m]}
-    :param turn_rad_s: turn rate of a stick pushed all the way to the side
+    :param fronts_m: {robot: distance from its laser to its front [m]}
+    :param turn_rad_s: turn rate at full sideways deflection of the stick [rad/s]
     """
 
     def __init__(self, scenario, fronts_m, turn_rad_s):
         self._operator = ScriptedOperator(scenario.routes, turn_rad_s)
         self._eyes = {name: _Eye(name, fronts_m[name]) for name in scenario.robots}
-        self._waits_for, self._gates = '?', None
+        self._drive = None
         self._leased_at, self._chosen = -math.inf, None
-        self._select = rospy.Publisher('/robot_controller/robot_select', RobotSelect, queue_size=1,
+        self._select = rospy.Publisher('/robot_controller/robot_select', RobotSelect, queue_size=10,
                                        latch=True, tcp_nodelay=True)
         self._joy = rospy.Publisher('/mux_in/joy', Joy, queue_size=1, tcp_nodelay=True)
         rospy.Subscriber('/tf', TFMessage, self._on_tf, queue_size=10, tcp_nodelay=True)
-        rospy.Subscriber('/mux/waits_for', String, self._on_waits, queue_size=1)
-        rospy.Subscriber('/gates/state', GatesState, self._on_gates, queue_size=1)
+        rospy.Subscriber('/mux/state', DriveState, self._on_state, queue_size=1, tcp_nodelay=True)
         self._done = threading.Event()
 
     def start(self):
-        """Begin to drive."""
+        """Start to drive."""
         rospy.on_shutdown(self.stop)
         threading.Thread(target=self._run, name='scripted operator', daemon=True).start()
         return self
 
     def stop(self):
-        """Let go of the stick and of every robot."""
+        """Centre the stick and deselect all robots."""
         if not self._done.is_set():
             self._done.set()
             self._send(Act())
@@ -101,11 +98,8 @@ class ScriptedHands:
             if name in self._eyes and frame in ('odom', 'base_link'):
                 self._eyes[name].on_transform(frame, _pose(each.transform))
 
-    def _on_waits(self, message):
-        self._waits_for = message.data
-
-    def _on_gates(self, state):
-        self._gates = state
+    def _on_state(self, state):
+        self._drive = state
 
     def _run(self):
         rate = rospy.Rate(RATE_HZ)
@@ -121,16 +115,17 @@ class ScriptedHands:
                 raise
 
     def _take_control(self):
-        """Take control from another screen, once the gates are heard."""
-        while self._gates is None and not self._done.wait(0.05):
+        """Take control from another screen, once the mux state is known."""
+        while self._drive is None and not self._done.wait(0.05):
             pass
-        if self._gates is not None and self._gates.operator not in ('', rospy.get_name()):
-            rospy.ServiceProxy('/gates/take_control', Trigger)()
+        if self._drive is not None and self._drive.operator not in ('', rospy.get_name()):
+            rospy.ServiceProxy('/mux/take_control', Trigger)()
 
     def _ready(self, robot):
-        """Tell whether the stick counts: else it has to be centred first."""
-        gate = next((each for each in self._gates.robots if each.name == robot), None)
-        return not self._waits_for and gate is not None and gate.stands != RobotGate.JOINING
+        """Return whether the stick drives the robot, or must be centred first."""
+        drive = self._drive
+        found = next((each for each in drive.robots if each.name == robot), None)
+        return not drive.waits_for and found is not None and found.stands != RobotDrive.JOINING
 
     def _send(self, act):
         now = time.monotonic()

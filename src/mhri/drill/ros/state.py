@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""How a drill is going: the referee says it, a screen hears it.
+"""The state of a drill: published by the referee, subscribed by screens.
 
-``/mhri_drill/state`` (``mhri/DrillState``, latched, on change and at 1 Hz until it is over).
+``/mhri_drill/state`` (``mhri/DrillState``, latched, on change and at 1 Hz until the end).
 """
 import math
 
@@ -15,12 +15,12 @@ from mhri.msg import DrillState
 from mhri.session.topics import DRILL
 
 AGAIN_S = 1.0
-# More than any drill has.
-MOST_TARGETS = 1000
+# Limit of received targets, more than any drill has.
+MAX_TARGETS = 1000
 
 
-class DrillTeller:
-    """Publishes the state of one run; used by one thread.
+class DrillPublisher:
+    """Publishes the state of one run; not thread-safe.
 
     :param scenario: :class:`mhri.drill.scenario.Scenario`
     :param referee: :class:`mhri.drill.referee.Referee`
@@ -31,8 +31,8 @@ class DrillTeller:
         self._said, self._said_at = None, rospy.Time()
         self._publisher = rospy.Publisher(DRILL, DrillState, queue_size=10, latch=True)
 
-    def tell(self, phase, ended='', page=''):
-        """Say it, if it is news or a second old.
+    def publish(self, phase, ended='', page=''):
+        """Publish the state if it has changed, or once a second.
 
         :param phase: one of the constants of the message
         :param page: path of the file with the result
@@ -53,29 +53,29 @@ class DrillTeller:
 
 
 class DrillClient:
-    """Hears it; :meth:`view` returns the newest word."""
+    """Subscribes the state; :meth:`view` returns the newest one."""
 
     def __init__(self):
         self._view = None
         self._node = NodeClient('drill_client')
 
     def start(self):
-        """Begin; call it after ``rospy.init_node``. Returns at once."""
-        self._node.do(self._node.subscribe, DRILL, DrillState, self._hear, 10)
+        """Start, after ``rospy.init_node``; return at once."""
+        self._node.do(self._node.subscribe, DRILL, DrillState, self._on_state, 10)
 
-    def _hear(self, state):
+    def _on_state(self, state):
         if not math.isfinite(state.elapsed_s + state.limit_s):
             return
         self._view = DrillView(
             state.header.stamp.to_sec(), tidy_text(state.title), tidy_text(state.about),
-            state.phase, state.elapsed_s, state.limit_s, tidy_names(state.found, MOST_TARGETS),
-            tidy_names(state.left, MOST_TARGETS), state.in_order, tidy_text(state.ended),
+            state.phase, state.elapsed_s, state.limit_s, tidy_names(state.found, MAX_TARGETS),
+            tidy_names(state.left, MAX_TARGETS), state.in_order, tidy_text(state.ended),
             tidy_text(state.page))
 
     def view(self):
-        """Return a :class:`DrillView`, None before the first word."""
+        """Return a :class:`DrillView`, None before the first message."""
         return self._view
 
     def close(self):
-        """Hear nothing more; returns at once."""
+        """Unsubscribe; return at once."""
         self._node.close(forget=True)

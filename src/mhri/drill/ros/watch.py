@@ -1,67 +1,54 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the referee of a drill hears of the operator, and how it asks robots to fail.
+"""The referee's subscription of the operator's state, and its client of faults.
 
-Subscribes ``/gates/state`` (``mhri/GatesState``: the robots that obey the operator),
-``/mux/pushed`` and ``/robot_controller/stop_all`` (``std_msgs/Bool``). Calls
-``/<robot>/base/set_fault`` (``mhri/SetFault``).
+Subscribes ``/mux/state`` (``mhri/DriveState``: the robots driven by the operator, whether the stick
+is held, whether STOP ALL is in force). Calls ``/<robot>/base/set_fault`` (``mhri/SetFault``).
 """
-import threading
-
 import rospy
-from std_msgs.msg import Bool
 
 from mhri.drill.referee import Doing
 from mhri.graph.ros.node_client import call
 from mhri.graph.ros.worker import Worker
-from mhri.msg import GatesState, RobotGate
+from mhri.msg import DriveState, RobotDrive
 from mhri.sim.faults import ALL
 from mhri.srv import SetFault
 
-# A robot that does not take a fault for so long is dead already [s].
+# A robot that does not answer for this long is already dead [s].
 CALL_S = 5.0
 
 
 class OperatorWatch:
-    """Knows what the operator does: newest value of each topic."""
+    """Follows the actions of the operator."""
 
     def __init__(self):
-        self._lock = threading.Lock()
         self._doing = Doing()
-        rospy.Subscriber('/gates/state', GatesState, self._on_gates, queue_size=1)
-        for topic, field in (('/mux/pushed', 'pushed'), ('/robot_controller/stop_all', 'stopped')):
-            rospy.Subscriber(topic, Bool, self._on_bool, field, queue_size=1)
+        rospy.Subscriber('/mux/state', DriveState, self._on_state, queue_size=1)
 
-    def _on_gates(self, state):
-        names = tuple(robot.name for robot in state.robots if robot.obeys == RobotGate.OPERATOR)
-        self._take(selected=names)
-
-    def _on_bool(self, message, field):
-        self._take(**{field: message.data})
-
-    def _take(self, **fields):
-        with self._lock:
-            self._doing = self._doing._replace(**fields)
+    def _on_state(self, state):
+        self._doing = Doing(
+            selected=tuple(robot.name for robot in state.robots
+                           if robot.obeys == RobotDrive.OPERATOR),
+            pushed=state.pushed, stopped=state.stop_all)
 
     def doing(self):
-        """Return the :class:`mhri.drill.referee.Doing` of this moment."""
-        with self._lock:
-            return self._doing
+        """Return the current :class:`mhri.drill.referee.Doing`."""
+        return self._doing
 
 
 class FaultCaller:
-    """Asks robots to fail, on a thread of its own."""
+    """Injects faults, on its own thread."""
 
     def __init__(self, robots):
         self._robots = robots
         self._worker = Worker('faults').start()
 
     def begin(self, robot, key, value, for_s):
-        """Begin a fault, for so many seconds; return at once."""
+        """Start a fault with a duration [s]; return at once."""
         self._worker.do(self._call, robot, key, value, for_s)
 
     def end_all(self):
-        """End every fault of every robot, and wait for their answers."""
+        """End all faults of all robots, and wait for the answers."""
         for robot in self._robots if not rospy.is_shutdown() else ():
             self._call(robot, ALL, 0.0, -1.0)
 

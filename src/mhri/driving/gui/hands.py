@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Hands that nobody has: mouse, keyboard and stick of a scripted drive, and their patience."""
+"""Simulated mouse, keyboard and stick of a scripted drive, with retries."""
 import math
 import time
 
@@ -8,12 +8,14 @@ from python_qt_binding.QtCore import QEvent, QPoint, QPointF, Qt
 from python_qt_binding.QtGui import QKeyEvent, QMouseEvent
 from python_qt_binding.QtWidgets import QApplication, QWidget
 
-# Endings of the bottom line.
-CENTRE, READY = 'centre the stick to drive', 'ready'
+from mhri.base.reasons import JOINING, Reason
+
+# Endings of the status line.
+CENTRE, READY = Reason(JOINING).what, 'ready'
 
 
 class DemoFailed(Exception):
-    """A step did not succeed in time; the text says which."""
+    """A step did not succeed in time; the text names it."""
 
 
 class Hands:
@@ -28,7 +30,7 @@ class Hands:
     def widget(self, name, window=None):
         """Return a widget of the panel, or of another window, by its object name.
 
-        :raises DemoFailed: there is none
+        :raises DemoFailed: no widget has this name
         """
         found = (window or self._panel).findChild(QWidget, name)
         if found is None:
@@ -43,9 +45,9 @@ class Hands:
         self._mouse(widget, QEvent.MouseButtonRelease, point, Qt.NoButton)
 
     def hold_stick(self, forward, turn):
-        """Take the virtual joystick and hold it at fractions in [-1, 1]."""
+        """Grab the virtual joystick and hold it at fractions in [-1, 1]."""
         stick = self.widget('joystick')
-        centre = stick.rect().center()
+        centre = stick.pad().center().toPoint()
         travel = stick.travel()
         target = centre + QPoint(round(-turn * travel), round(-forward * travel))
         self._mouse(stick, QEvent.MouseButtonPress, centre, Qt.LeftButton)
@@ -66,7 +68,7 @@ class Hands:
             QApplication.sendEvent(self._panel, QKeyEvent(kind, key, modifiers, text))
 
     def tap(self, view, x_m, y_m):
-        """Click at a place of the map.
+        """Click at a position of the map.
 
         :param view: :class:`mhri.map.gui.map_canvas.MapCanvas`
         """
@@ -85,13 +87,13 @@ class Hands:
 class Grip:
     """Holds something (stick or key) until a condition is true.
 
-    If the mux asks for a centred stick meanwhile (a computer that stalled for half a second looks
-    like a silent source), it does what an operator does: it lets go and takes hold again.
+    If the mux requires a centred stick meanwhile (a computer that stalled for half a second looks
+    like a silent source), it releases the stick and grabs it again, as an operator would.
 
-    :param take: function that takes it
-    :param let_go: function that lets it go
-    :param status: function that returns the panel's bottom line
-    :param condition: what to wait for
+    :param take: function that grabs it
+    :param let_go: function that releases it
+    :param status: function that returns the panel's status line
+    :param condition: function that returns whether to stop waiting
     """
 
     def __init__(self, take, let_go, status, condition):
@@ -119,11 +121,11 @@ class Grip:
 
 
 class Errand:
-    """Does something, and again after a while, until a condition is true.
+    """Repeats an action at intervals until a condition is true.
 
-    :param act: function that does it
-    :param condition: what to wait for
-    :param again_s: an operator would try again after so long
+    :param act: function that performs the action
+    :param condition: function that returns whether to stop
+    :param again_s: interval after which an operator would try again [s]
     """
 
     def __init__(self, act, condition, again_s=5.0):

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Asks over the foot of the screen, and never in a dialog, whether it is to be closed."""
+"""Asks whether to close the screen, above its foot instead of in a dialog."""
 from python_qt_binding.QtCore import Qt, Signal
 
 from mhri.base.gui import words
@@ -8,7 +8,7 @@ from mhri.driving.gui.asking_bar import AskingBar
 
 
 class LeaveBar(AskingBar):
-    """Hidden until :meth:`ask`; "Stay" has the keyboard then, so that Return closes nothing."""
+    """Hidden until :meth:`ask`; then "Stay" has the focus, so that Return closes nothing."""
 
     close_requested = Signal()
 
@@ -25,13 +25,13 @@ class LeaveBar(AskingBar):
         self.hide()
 
     def _connect(self):
-        """Wire the buttons."""
+        """Connect the buttons."""
         self.stay_button.clicked.connect(self.hide)
         self.close_button.clicked.connect(self.close_requested)
 
     @property
     def question(self):
-        """The question on show, '' for none."""
+        """The displayed question, '' for none."""
         return self._line.text() if self.isVisible() else ''
 
     def ask(self, question):

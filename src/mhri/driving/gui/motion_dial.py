@@ -1,33 +1,37 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Where a robot heads and how it moves, as a picture: a compass with a track."""
+"""A robot's heading and motion as a picture: a compass with a track."""
 import math
 from collections import deque
 
-from python_qt_binding.QtCore import QPointF, QRectF, QSize, Qt
-from python_qt_binding.QtGui import QPainter, QPalette, QPen, QPolygonF
+from python_qt_binding.QtCore import QPointF, QRectF, Qt
+from python_qt_binding.QtGui import QPalette, QPen, QPolygonF
 from python_qt_binding.QtWidgets import QSizePolicy, QWidget
 
 from mhri.base.gui import theme
+from mhri.base.gui.painting import Sized
+from mhri.base.limits import Velocity
 
 TRACK_POINTS = 600
 TRACK_STEP_M = 0.02
 _TRACK_RADII_M = (1.0, 2.0, 5.0, 10.0, 20.0, 50.0)
-# The arrow bends by as much as the robot turns in this time, up to a hook that can be read.
+# The arrow bends by the robot's turn in this time [s], up to a maximum that is still readable.
 _AHEAD_S = 2.0
-_MOST_BEND_RAD = 2.6
-# Without a maximum of its own, a robot's speed is drawn against this.
+_MAX_BEND_RAD = 2.6
+# Full scale for the speed of a robot without a known maximum.
 _USUAL_MAX_MPS = 0.5
-# A dial of fewer lines of text has no words.
+# A dial smaller than this many lines of text has no labels.
 _SMALL_UNITS = 9.0
 
 
-class MotionDial(QWidget):
+class MotionDial(Sized, QWidget):
     """The robot in the middle, its ``odom`` frame around it: x up, y to the left (REP-103).
 
-    The arrow grows with the speed in parts of the robot's own maximum and bends with its turn; the
-    line is the way it came, drawn to the scale written beside it.
+    The arrow's length is the speed as a fraction of the robot's maximum, its bend the turn; the
+    line is the robot's past path, to the scale shown in the corner.
     """
+
+    USUAL_UNITS, MIN_UNITS = (16, 16), (3, 3)
 
     def __init__(self, parent=None):
         super().__init__(parent)
@@ -36,23 +40,13 @@ class MotionDial(QWidget):
         self.setSizePolicy(QSizePolicy.Expanding, QSizePolicy.Expanding)
 
     def show_view(self, view):
-        """Show a :class:`RobotView`; what is None or not finite is not drawn."""
+        """Show a :class:`RobotView`; values that are None or not finite are not drawn."""
         self._view = view
         if _finite(view.x_m, view.y_m):
             point = (view.x_m, view.y_m)
             if not self._track or math.dist(point, self._track[-1]) >= TRACK_STEP_M:
                 self._track.append(point)
         self.update()
-
-    def sizeHint(self):  # noqa: N802
-        """Return a comfortable size."""
-        side = self.fontMetrics().height() * 16
-        return QSize(side, side)
-
-    def minimumSizeHint(self):  # noqa: N802
-        """Return the least that can be read."""
-        side = self.fontMetrics().height() * 3
-        return QSize(side, side)
 
     def _radius(self):
         """Return the radius of the dial [px]."""
@@ -61,13 +55,12 @@ class MotionDial(QWidget):
         return max(4.0, min(self.width(), self.height()) / 2.0 - edge)
 
     def _is_small(self):
-        """Tell whether there is no room for words."""
+        """Return whether there is no room for labels."""
         return min(self.width(), self.height()) < _SMALL_UNITS * self.fontMetrics().height()
 
     def paintEvent(self, event):  # noqa: N802
         """Paint everything."""
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.Antialiasing)
+        painter = theme.smooth_painter(self)
         painter.translate(QRectF(self.rect()).center())
         radius = self._radius()
         self._paint_rim(painter, radius)
@@ -86,8 +79,7 @@ class MotionDial(QWidget):
         """Paint rim, ticks and the names of the axes."""
         palette = self.palette()
         line = theme.line_colour(palette)
-        painter.setPen(QPen(line, 2))
-        painter.setBrush(palette.color(QPalette.Base))
+        theme.set_ink(painter, QPen(line, 2), palette.color(QPalette.Base))
         painter.drawEllipse(QPointF(0, 0), radius, radius)
         painter.setPen(QPen(line, 1, Qt.DotLine))
         painter.drawEllipse(QPointF(0, 0), radius / 2.0, radius / 2.0)
@@ -105,7 +97,7 @@ class MotionDial(QWidget):
                                  int(Qt.AlignCenter), text)
 
     def _paint_track(self, painter, radius):
-        """Paint the way the robot came, and its scale."""
+        """Paint the robot's past path and its scale."""
         here = (self._view.x_m, self._view.y_m)
         reach = max((math.dist(point, here) for point in self._track), default=0.0)
         span = next((r for r in _TRACK_RADII_M if r >= reach * 1.05), _TRACK_RADII_M[-1])
@@ -128,33 +120,34 @@ class MotionDial(QWidget):
                          'rim: {:g} m'.format(span))
 
     def _paint_robot(self, painter, radius):
-        """Paint the body, pointing where the robot heads, and the arrow of its speed."""
+        """Paint the body, pointing along the robot's heading, and the arrow of its speed."""
         view = self._view
         ink = theme.colour(theme.DRIVE if view.driven else theme.TEXT, self.palette())
         body = radius * 0.15
         painter.save()
         painter.rotate(-math.degrees(view.heading_rad))
+        painter.save()
         self._paint_motion(painter, ink, body, radius)
+        painter.restore()
         painter.setPen(QPen(ink, 2))
         painter.setBrush(theme.blend(self.palette().color(QPalette.Base), ink, 0.25))
         painter.drawEllipse(QPointF(0, 0), body, body)
-        painter.setBrush(ink)
-        painter.setPen(Qt.NoPen)
+        theme.set_ink(painter, brush=ink)
         painter.drawPolygon(QPolygonF([QPointF(0, -body * 0.78), QPointF(body * 0.55, body * 0.45),
                                        QPointF(0, body * 0.2), QPointF(-body * 0.55, body * 0.45)]))
         painter.restore()
 
     def _paint_motion(self, painter, ink, body, radius):
-        """Paint the arrow of the speed, bent as the path is; or that of a turn on the spot."""
+        """Paint the arrow of the speed, bent like the path, or of a turn on the spot."""
         view = self._view
         if not _finite(view.linear_mps, view.angular_rad_s):
             return
-        share = view.linear_mps / (view.max_linear_mps or _USUAL_MAX_MPS)
-        share = max(-1.0, min(1.0, share))
-        bend = max(-_MOST_BEND_RAD, min(_MOST_BEND_RAD, view.angular_rad_s * _AHEAD_S))
-        if abs(share) > 0.01:
-            length = body + (radius * 0.84 - body) * abs(share)
-            path = _bent(length, math.copysign(1.0, share), bend)
+        moves = Velocity(view.linear_mps, lateral_mps=view.lateral_mps or 0.0)
+        share = min(1.0, moves.speed_mps / (view.max_linear_mps or _USUAL_MAX_MPS))
+        bend = max(-_MAX_BEND_RAD, min(_MAX_BEND_RAD, view.angular_rad_s * _AHEAD_S))
+        if share > 0.01:
+            painter.rotate(-math.degrees(math.atan2(moves.lateral_mps, moves.linear_mps)))
+            path = _bent(body + (radius * 0.84 - body) * share, bend)
         elif abs(bend) > 0.02:
             path = [QPointF(-math.sin(bend * part / 16.0) * body * 1.8,
                             -math.cos(bend * part / 16.0) * body * 1.8) for part in range(17)]
@@ -164,8 +157,7 @@ class MotionDial(QWidget):
         painter.setPen(QPen(ink, max(3.0, radius * 0.035), Qt.SolidLine, Qt.FlatCap,
                             Qt.RoundJoin))
         painter.drawPolyline(QPolygonF(path))
-        painter.setPen(Qt.NoPen)
-        painter.setBrush(ink)
+        theme.set_ink(painter, brush=ink)
         painter.save()
         painter.translate(path[-1])
         step = path[-1] - path[-2]
@@ -176,22 +168,22 @@ class MotionDial(QWidget):
         painter.restore()
 
 
-def _bent(length, way, bend):
-    """Return a path from the middle of the robot: its length, ahead or back, and turn in all."""
+def _bent(length, bend):
+    """Return the path ahead from the robot's centre, of a length [px] and a total turn [rad]."""
     path, steps, angle = [QPointF(0, 0)], 24, 0.0
     for _ in range(steps):
-        angle += way * bend / steps
+        angle += bend / steps
         last = path[-1]
-        path.append(QPointF(last.x() - way * math.sin(angle * way) * length / steps,
-                            last.y() - way * math.cos(angle * way) * length / steps))
+        path.append(QPointF(last.x() - math.sin(angle) * length / steps,
+                            last.y() - math.cos(angle) * length / steps))
     return path
 
 
 def _finite(*values):
-    """Tell whether all values are numbers."""
+    """Return whether all values are finite numbers."""
     return all(value is not None and math.isfinite(value) for value in values)
 
 
 def _polar(angle_rad, radius):
-    """Return the place on the dial at an angle from x (up), counter-clockwise."""
+    """Return the point on the dial at an angle from x (up), counter-clockwise."""
     return QPointF(-math.sin(angle_rad) * radius, -math.cos(angle_rad) * radius)

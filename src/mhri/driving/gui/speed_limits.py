@@ -1,12 +1,13 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The operator's speed limits: two sliders with their values beside them."""
+"""The operator's speed limits: two sliders with their values."""
 from python_qt_binding.QtCore import QRectF, QSize, Qt, QTimer, Signal
-from python_qt_binding.QtGui import QPainter, QPalette, QPen
+from python_qt_binding.QtGui import QPalette, QPen
 from python_qt_binding.QtWidgets import (
     QAbstractSlider, QGridLayout, QHBoxLayout, QLabel, QSizePolicy, QStyle, QWidget)
 
 from mhri.base.gui import theme
+from mhri.base.gui.choices import IgnoresWheel
 from mhri.base.gui.labels import TextLine
 from mhri.base.gui.pending import Pending
 from mhri.base.gui.switches import SwitchBox
@@ -18,10 +19,10 @@ EMIT_PERIOD_MS = 50
 _ANSWER_WITHIN_S = 1.0
 
 
-class LimitSlider(QAbstractSlider):
-    """A slider for fingers: the handle is as large as a finger and goes where it is put.
+class LimitSlider(IgnoresWheel, QAbstractSlider):
+    """A slider for touch: the handle is as large as a finger and jumps to the touched position.
 
-    The wheel does nothing here: scrolling past must not change how fast robots go.
+    The wheel has no effect: scrolling past must not change the speed of robots.
     """
 
     def __init__(self, parent=None):
@@ -31,21 +32,17 @@ class LimitSlider(QAbstractSlider):
         self.setSizePolicy(QSizePolicy.Expanding, QSizePolicy.Fixed)
 
     def sizeHint(self):  # noqa: N802
-        """Return a size that a finger can use."""
+        """Return a comfortable size for touch."""
         side = theme.touch_size(self)
         return QSize(side * 4, side)
 
     def minimumSizeHint(self):  # noqa: N802
-        """Return the least size that a finger can use."""
+        """Return the minimum size for touch."""
         side = theme.touch_size(self)
         return QSize(side * 2, side)
 
-    def wheelEvent(self, event):  # noqa: N802
-        """Leave the wheel to whatever scrolls."""
-        event.ignore()
-
     def mousePressEvent(self, event):  # noqa: N802
-        """Take the handle."""
+        """Grab the handle."""
         if event.button() == Qt.LeftButton:
             self.setSliderDown(True)
             self._follow(event.pos().x())
@@ -56,12 +53,12 @@ class LimitSlider(QAbstractSlider):
             self._follow(event.pos().x())
 
     def mouseReleaseEvent(self, event):  # noqa: N802
-        """Let the handle go."""
+        """Release the handle."""
         if event.button() == Qt.LeftButton:
             self.setSliderDown(False)
 
     def _follow(self, x):
-        """Set the value that belongs to a place, in whole single steps."""
+        """Set the value for a position, in whole single steps."""
         margin = self._radius() + 2
         raw = QStyle.sliderValueFromPosition(
             self.minimum(), self.maximum(), x - margin, max(1, self.width() - 2 * margin))
@@ -72,13 +69,12 @@ class LimitSlider(QAbstractSlider):
         return round(self.fontMetrics().height() * 0.62)
 
     def sliderChange(self, change):  # noqa: N802
-        """Paint again whatever changed."""
+        """Repaint after any change."""
         self.update()
 
     def paintEvent(self, event):  # noqa: N802
         """Paint groove, filled part and handle."""
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.Antialiasing)
+        painter = theme.smooth_painter(self)
         palette = self.palette()
         radius = self._radius()
         margin = radius + 2
@@ -86,14 +82,13 @@ class LimitSlider(QAbstractSlider):
         x = margin + QStyle.sliderPositionFromValue(self.minimum(), self.maximum(), self.value(),
                                                     span)
         middle = self.height() / 2.0
-        painter.setPen(Qt.NoPen)
-        painter.setBrush(theme.line_colour(palette))
+        theme.set_ink(painter, brush=theme.line_colour(palette))
         painter.drawRoundedRect(QRectF(margin, middle - 3, span, 6), 3, 3)
         ink = theme.colour(theme.DRIVE if self.isEnabled() else theme.MUTED, palette)
         painter.setBrush(ink)
         painter.drawRoundedRect(QRectF(margin, middle - 3, x - margin, 6), 3, 3)
-        painter.setPen(QPen(ink, 3))
-        painter.setBrush(ink if self.isSliderDown() else palette.color(QPalette.Button))
+        theme.set_ink(painter, QPen(ink, 3),
+                      ink if self.isSliderDown() else palette.color(QPalette.Button))
         painter.drawEllipse(QRectF(x - radius, middle - radius, 2 * radius, 2 * radius))
         if self.hasFocus():
             painter.setPen(QPen(palette.color(QPalette.WindowText), 1, Qt.DotLine))
@@ -102,13 +97,13 @@ class LimitSlider(QAbstractSlider):
 
 
 class SpeedLimits(QWidget):
-    """Forward [m/s] and turn [rad/s]; follows the limits in force while nobody changes them."""
+    """Forward [m/s] and turn [rad/s]; shows the limits in force unless the operator edits them."""
 
     #: m/s and rad/s; at most 20 times a second while a slider moves, and at the end
     limits_requested = Signal(float, float)
-    #: whether all selected robots are to keep to the slowest
+    #: whether all selected robots should keep to the pace of the slowest
     together_requested = Signal(bool)
-    #: whether what is driven by hand is to slow down for obstacles
+    #: whether manually driven robots should slow down for obstacles
     brake_requested = Signal(bool)
 
     def __init__(self, parent=None):
@@ -149,8 +144,8 @@ class SpeedLimits(QWidget):
         self.brake_box = SwitchBox('obstacle brake', self)
         self.brake_box.setObjectName('brake_box')
         self.brake_box.setToolTip(
-            'Robots in hand slow down for what their laser sees in the way, to a stop before it;\n'
-            'without a laser, for what their depth camera sees. Backing away and turning stay\n'
+            'Driven robots slow down and stop before obstacles that their laser sees;\n'
+            'without a laser, that their depth camera sees. Backing away and turning stay\n'
             'possible; what neither sees is not avoided.')
         self.pace_label = TextLine(self)
         self.pace_label.setObjectName('pace_label')
@@ -162,9 +157,7 @@ class SpeedLimits(QWidget):
         grid.addLayout(group, len(rows), 1, 1, 3)
         grid.addWidget(self.brake_box, len(rows) + 1, 1, 1, 3)
         grid.setColumnStretch(2, 1)
-        self._timer = QTimer(self)
-        self._timer.setSingleShot(True)
-        self._timer.setInterval(EMIT_PERIOD_MS)
+        self._timer = QTimer(self, singleShot=True, interval=EMIT_PERIOD_MS)
 
     def _slider(self, name, bounds, step, page):
         """Make one slider; its steps are hundredths."""
@@ -176,7 +169,7 @@ class SpeedLimits(QWidget):
         return slider
 
     def _connect(self):
-        """Wire the sliders."""
+        """Connect the sliders."""
         for slider in (self.linear_slider, self.angular_slider):
             slider.valueChanged.connect(self._on_value)
             slider.sliderReleased.connect(self._send)
@@ -185,22 +178,22 @@ class SpeedLimits(QWidget):
         self.brake_box.clicked.connect(self.brake_requested)
 
     def show_limits(self, limits):
-        """Show the limits in force [m/s, rad/s], unless the operator is just changing them."""
+        """Show the limits in force [m/s, rad/s], unless the operator is changing them."""
         if limits != self._limits or self._asked.value is not None:
             self._limits = limits
             self._show()
 
     def show_pace(self, together, pace, slowed=False, brake=False):
-        """Show how the robots keep to each other, in words; ``slowed`` by a link points at it."""
+        """Show the pace of the robots as text, highlighted if ``slowed`` by a link."""
         self.together_box.setChecked(together)
         self.brake_box.setChecked(brake)
         head, _, tail = pace.partition(': ')
-        # The speed is what matters: by how much it is less, or how much it is at most.
+        # Keep the speed when shortening: the percentage or the maximum.
         shorter = (head,) if slowed else (tail, tail.replace('at most ', '')) if tail else ()
         self.pace_label.show_text(pace, theme.ATTENTION if slowed else theme.MUTED, shorter)
 
     def _show(self):
-        """Place the sliders; a limit outside their range is still told by its number."""
+        """Place the sliders; a limit outside their range is still shown as a number."""
         if self._dragged():
             return
         limits = self._asked.settle(self._limits)
@@ -216,11 +209,11 @@ class SpeedLimits(QWidget):
             label.show_text('{:.2f} {}'.format(value, unit))
 
     def _dragged(self):
-        """Tell whether the operator holds a slider."""
+        """Return whether the operator holds a slider."""
         return self.linear_slider.isSliderDown() or self.angular_slider.isSliderDown()
 
     def _on_value(self):
-        """Take a value of the operator's; the other limit stays exactly as it is in force."""
+        """Handle a value set by the operator; the other limit stays as it is in force."""
         sliders = (self.linear_slider, self.angular_slider)
         limits = list(self._asked.settle(self._limits))
         index = sliders.index(self.sender())
@@ -232,7 +225,7 @@ class SpeedLimits(QWidget):
             self._send()
 
     def _send(self):
-        """Ask for the newest value, once."""
+        """Request the newest value, once."""
         if self._unsent is None:
             return
         limits, self._unsent = self._unsent, None

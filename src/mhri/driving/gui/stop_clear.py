@@ -10,7 +10,7 @@ _OVER = frozenset((Qt.Popup, Qt.ToolTip, Qt.Dialog, Qt.Sheet))
 
 
 def stop_areas():
-    """Return where stop buttons are on the desktop, a :class:`QRect` each."""
+    """Return the area of each stop button on the desktop as a :class:`QRect`."""
     return [_area(button) for button in stop_buttons()]
 
 
@@ -19,9 +19,9 @@ def _area(button):
 
 
 def press_beneath(event):
-    """Press the stop button that a press is on which an open menu or list received.
+    """Press the stop button under a press that an open menu or list received.
 
-    :returns: whether there was one; menus are closed then
+    :returns: whether there was a stop button; if so, the menus are closed
     """
     popup = QApplication.activePopupWidget()
     button = None if popup is None else next(
@@ -38,21 +38,21 @@ def press_beneath(event):
 
 
 def desktop_at(place):
-    """Return the area of the monitor at a place, a :class:`QRect`."""
+    """Return the area of the monitor at a point, as a :class:`QRect`."""
     return (QApplication.screenAt(place) or QApplication.primaryScreen()).availableGeometry()
 
 
 def room_px(place):
-    """Return how high a menu may be at a place, a :class:`QPoint`, with no stop button below it."""
+    """Return the maximum height of a menu at a :class:`QPoint` that leaves stop buttons clear."""
     desktop = desktop_at(place)
     return min([area.top() for area in stop_areas() if area.top() > desktop.center().y()
                 and desktop.intersects(area)] + [desktop.bottom() + 1]) - desktop.top()
 
 
 def keep_clear(window):
-    """Move a window that is about to lie over a stop button to the nearest place beside them.
+    """Move a window that would cover a stop button to the nearest free place.
 
-    Where there is none, it becomes as low as the room above.
+    Without a free place, it is reduced to the height above the button.
     """
     if window.windowType() not in _OVER:
         return
@@ -75,5 +75,5 @@ def keep_clear(window):
 
 
 def _is_free(box, areas, desktop):
-    """Tell whether a place is on the desktop and beside every stop button."""
+    """Return whether a rectangle is on the desktop and covers no stop button."""
     return desktop.contains(box) and not any(area.intersects(box) for area in areas)

@@ -1,249 +1,132 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """The virtual joystick: a round pad with a knob that springs back."""
-import math
+from python_qt_binding.QtCore import QSize, Qt, Signal
+from python_qt_binding.QtGui import QPalette
+from python_qt_binding.QtWidgets import QSizePolicy, QToolButton
 
-from python_qt_binding.QtCore import QEvent, QPointF, QRectF, QSize, Qt, Signal
-from python_qt_binding.QtGui import QPainter, QPalette, QPen
-from python_qt_binding.QtWidgets import QSizePolicy, QWidget
+from mhri.base.gui import theme, words
+from mhri.base.names import listed
+from mhri.driving.gui.spring_pad import CAPTION_LINES, deflection_of, SpringPad, TRAVEL_SHARE
 
-from mhri.base.gui import theme
-from mhri.driving.gui.hold_limit import HoldLimit
+#: text and accessible name of the button that maps the pad's left and right to sideways motion
+SIDEWAYS = '\u21c4'
+SIDEWAYS_TIP = 'left and right go sideways instead of turning'
 
-CENTRE_SNAP = 0.08  # deflection that still is neutral
-AXIS_SNAP = 0.06    # deflection of one axis that still is straight, so that one can drive a line
-
-_TRAVEL_SHARE = 0.72  # of the pad's radius; the rest is for the knob
-_MOST_LINES = 22    # a pad larger than a hand's reach is slower, not finer
-
-# Whatever takes the pointer or the operator's eye away from the pad lets the stick go.
-_LOSSES = frozenset((QEvent.WindowDeactivate, QEvent.WindowBlocked, QEvent.Hide, QEvent.FocusOut,
-                     QEvent.UngrabMouse, QEvent.TouchCancel))
-_TOUCHES = frozenset((QEvent.TouchBegin, QEvent.TouchUpdate, QEvent.TouchEnd))
+_REST = (0.0, 0.0, 0.0)
+# Width that is enough for a finger, however large the text [px].
+_ENOUGH_PX = 126
 
 
-def deflection_of(across, along):
-    """Turn the place of the knob into a deflection.
-
-    :param across: to the right of the centre, in radii of the pad's travel
-    :param along: above the centre, in radii
-    :returns: (forward, turn), within the unit circle; forward + is ahead, turn + is left; 0 within
-        the dead centre, from there on without a step
-    """
-    radius = math.hypot(across, along)
-    if radius <= CENTRE_SNAP:
-        return 0.0, 0.0
-    fraction = (min(1.0, radius) - CENTRE_SNAP) / (1.0 - CENTRE_SNAP)
-    return _snapped(along / radius * fraction), _snapped(-across / radius * fraction)
-
-
-def _snapped(value):
-    """Return one axis with its own dead centre."""
-    size = (abs(value) - AXIS_SNAP) / (1.0 - AXIS_SNAP)
-    return math.copysign(min(1.0, size), value) if size > 0.0 else 0.0
-
-
-class VirtualJoystick(QWidget):
+class VirtualJoystick(SpringPad):
     """Rotation and translation at once, by mouse or touch.
 
-    The knob follows the pointer while it is held and is neutral at any other time: on release, when
-    the window loses the focus, is hidden, blocked or disabled, or when the pointer is lost. On a
-    remote display (``limit``) also when the pointer has not moved for a second.
+    Above the pad it names the robots that it drives. For holonomic robots a button beside
+    the pad maps its left and right to sideways motion.
     """
 
-    #: forward (ahead +) and turn (left +), each in [-1, 1]; on every change, at once
-    moved = Signal(float, float)
-    #: it was let go since nothing came from the remote display
-    ran_out = Signal()
+    USUAL_UNITS, MIN_UNITS = (9.0, 9.0 + CAPTION_LINES), (7.0, 7.0 + CAPTION_LINES)
+
+    #: forward (ahead +), turn and sideways (left +), each in [-1, 1]; on every change, at once
+    moved = Signal(float, float, float)
 
     def __init__(self, parent=None):
         super().__init__(parent)
-        self._dragging = False
-        self._deflection = (0.0, 0.0)
-        self._knob = (0.0, 0.0)
-        self._active = True
-        self._touch_id = None
-        # A scripted drive holds it, and no hand over a connection.
-        self._made_up = False
-        self.limit = HoldLimit(self)
-        self.limit.ran_out.connect(self._run_out)
-        self.setAttribute(Qt.WA_AcceptTouchEvents)
-        # Seen without a button, a move says that the release was lost.
-        self.setMouseTracking(True)
+        self._deflection = _REST
+        #: the robots that it drives, in order
+        self.names = ()
         self.setSizePolicy(QSizePolicy.Expanding, QSizePolicy.Expanding)
+        # A click must not take the focus: the widget that loses it would release the stick.
+        self.sideways_button = QToolButton(self, text=SIDEWAYS, checkable=True, visible=False,
+                                           focusPolicy=Qt.NoFocus, toolTip=SIDEWAYS_TIP)
+        self.sideways_button.setAccessibleName('sideways')
+        self.sideways_button.toggled.connect(self._on_sideways)
 
-    @property
-    def dragging(self):
-        """Whether a pointer holds the knob."""
-        return self._dragging
+    def least_size(self, room):
+        """Return the minimum size: where a room [px] is too small, a finger's at any text size."""
+        size = self.minimumSizeHint()
+        spare = max(0, size.width() - room.width(), size.height() - room.height())
+        spare = min(spare, max(0, size.width() - _ENOUGH_PX))
+        return size - QSize(spare, spare)
 
     def deflection(self):
-        """Return (forward, turn) as held by the pointer; (0, 0) while nobody holds the knob."""
+        """Return the (forward, turn, sideways) held by the pointer; zeros if it is not held."""
         return self._deflection
 
     def centre(self):
-        """Let the knob go, wherever the pointer is; it has to be taken again."""
-        self._touch_id = None
-        self.limit.end()
-        if self._dragging:
-            self._dragging = False
-            self._set_deflection((0.0, 0.0))
-        self.show_keys(0.0, 0.0)
+        """Release the knob, wherever the pointer is; it has to be grabbed again."""
+        super().centre()
+        self.show_keys(*_REST)
 
-    def _run_out(self):
-        """Let go what nobody has shown to be held still."""
-        self.centre()
-        self.ran_out.emit()
-
-    def show_keys(self, forward, turn):
-        """Show a deflection held by keys; the pointer wins while it holds the knob."""
+    def show_keys(self, forward, turn, sideways):
+        """Show a deflection held by keys; the pointer has priority while it holds the knob."""
         if not self._dragging:
-            self._place_knob(-turn, forward)
+            self._place_knob(-turn or -sideways, forward)
 
-    def show_active(self, active):
-        """Show whether this stick is the one that drives; it moves without effect otherwise."""
-        if active != self._active:
-            self._active = active
+    def show_names(self, names):
+        """Show the names of the robots that it drives."""
+        if tuple(names) != self.names:
+            self.names = tuple(names)
+            self.setAccessibleName('virtual joystick of ' + ', '.join(names))
             self.update()
 
-    def sizeHint(self):  # noqa: N802
-        """Return a comfortable size."""
-        side = self.fontMetrics().height() * 13
-        return QSize(side, side)
+    def offer_sideways(self, offered):
+        """Show the button for sideways motion, or hide it and end sideways motion."""
+        if offered == self.sideways_button.isHidden():
+            self.sideways_button.setVisible(offered)
+            self.sideways_button.setChecked(False)
 
-    def minimumSizeHint(self):  # noqa: N802
-        """Return the least that can be steered with."""
-        side = self.fontMetrics().height() * 7
-        return QSize(side, side)
+    def _on_sideways(self, sideways):
+        """Switch the meaning of left and right; release the knob, since a held one must not change.
 
-    def event(self, event):
-        """Follow a touch, and let go on every kind of loss."""
-        kind = event.type()
-        if kind in _LOSSES or (kind == QEvent.EnabledChange and not self.isEnabled()):
-            self.centre()
-        elif kind in _TOUCHES:
-            self._on_touch(event)
-            event.accept()
-            return True
-        return super().event(event)
+        Also show the new meaning.
+        """
+        self.centre()
+        palette = QPalette(self.palette())
+        if sideways:
+            ground = theme.colour(theme.DRIVE, palette)
+            palette.setColor(QPalette.Button, ground)
+            palette.setColor(QPalette.ButtonText, theme.readable_on(ground))
+        self.sideways_button.setPalette(palette)
+        self.update()
 
-    def mousePressEvent(self, event):  # noqa: N802
-        """Take the knob."""
-        if event.button() == Qt.LeftButton and self._touch_id is None:
-            self._made_up = not event.spontaneous()
-            self._take(event.localPos())
+    def resizeEvent(self, event):  # noqa: N802
+        """Keep the button at the lower right of the round pad."""
+        super().resizeEvent(event)
+        side, pad = theme.touch_size(self), self.travel() / TRAVEL_SHARE
+        middle = self.pad().center().toPoint()
+        self.sideways_button.setGeometry(
+            min(self.width() - side, middle.x() + round(0.8 * pad)),
+            min(self.height(), middle.y() + round(pad)) - side, side, side)
 
-    def mouseMoveEvent(self, event):  # noqa: N802
-        """Move the knob."""
-        if not self._dragging or self._touch_id is not None:
-            return
-        if event.buttons() & Qt.LeftButton:
-            self._follow(event.localPos())
-        else:
-            self.centre()
+    def _hold(self, across, along):
+        """Emit the deflection of a place of the knob."""
+        forward, left = deflection_of(across, along)
+        self._set_deflection((forward, 0.0, left) if self.sideways_button.isChecked()
+                             else (forward, left, 0.0))
 
-    def mouseReleaseEvent(self, event):  # noqa: N802
-        """Let the knob go."""
-        if event.button() == Qt.LeftButton and self._touch_id is None:
-            self.centre()
-
-    def _on_touch(self, event):
-        """Follow the first finger; further ones are for other things."""
-        for point in event.touchPoints():
-            if self._touch_id is None and point.state() == Qt.TouchPointPressed:
-                self._touch_id = point.id()
-                self._made_up = False
-                self._take(point.pos())
-            elif point.id() == self._touch_id:
-                if point.state() == Qt.TouchPointReleased:
-                    self.centre()
-                else:
-                    self._follow(point.pos())
-        if event.type() == QEvent.TouchEnd:
-            self.centre()
-
-    def _take(self, pos):
-        """Begin to follow a pointer."""
-        self._dragging = True
-        self._follow(pos)
-
-    def _follow(self, pos):
-        """Place the knob where the pointer is, at most at the rim."""
-        if not self._made_up:
-            self.limit.renew()
-        middle, travel = QRectF(self.rect()).center(), self.travel()
-        across = (pos.x() - middle.x()) / travel
-        along = (middle.y() - pos.y()) / travel
-        excess = max(1.0, math.hypot(across, along))
-        self._place_knob(across / excess, along / excess)
-        self._set_deflection(deflection_of(across, along))
+    def _is_strong(self, quarter):
+        """Return whether an arrow is one of sideways motion, which replaces turning."""
+        return bool(quarter % 2) and self.sideways_button.isChecked()
 
     def _set_deflection(self, deflection):
-        """Tell of a changed deflection."""
+        """Emit a changed deflection."""
         if deflection != self._deflection:
             self._deflection = deflection
             self.moved.emit(*deflection)
 
-    def _place_knob(self, across, along):
-        """Show the knob at a place in radii of its travel; outside the circle it stays on it."""
-        excess = max(1.0, math.hypot(across, along))
-        place = (across / excess, along / excess)
-        if place != self._knob:
-            self._knob = place
-            self.update()
-
-    def travel(self):
-        """Return how far [px] the knob travels from the centre of the widget: deflection 1."""
-        most = self.fontMetrics().height() * _MOST_LINES
-        return max(8.0, min(self.width(), self.height(), most) / 2.0 - 3.0) * _TRAVEL_SHARE
-
     def paintEvent(self, event):  # noqa: N802
-        """Paint the pad and the knob."""
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.Antialiasing)
-        middle, travel = QRectF(self.rect()).center(), self.travel()
-        self._paint_pad(painter, middle, travel)
-        knob = QPointF(middle.x() + self._knob[0] * travel, middle.y() - self._knob[1] * travel)
-        self._paint_knob(painter, middle, knob, travel / _TRAVEL_SHARE * 0.27)
+        """Paint the names, the pad and the knob."""
+        painter = theme.smooth_painter(self)
+        self._paint_caption(painter, self._caption())
+        self._paint_all(painter)
 
-    def _paint_pad(self, painter, middle, travel):
-        """Paint what stands still."""
-        palette = self.palette()
-        pad = travel / _TRAVEL_SHARE
-        line = theme.line_colour(palette)
-        painter.setPen(QPen(line, 2, Qt.SolidLine if self._active else Qt.DashLine))
-        painter.setBrush(palette.color(QPalette.Base) if self._active else Qt.NoBrush)
-        painter.drawEllipse(middle, pad, pad)
-        painter.setBrush(Qt.NoBrush)
-        painter.setPen(QPen(line, 1, Qt.DotLine))
-        painter.drawEllipse(middle, travel, travel)
-        painter.drawLine(QPointF(middle.x() - travel, middle.y()),
-                         QPointF(middle.x() + travel, middle.y()))
-        painter.drawLine(QPointF(middle.x(), middle.y() - travel),
-                         QPointF(middle.x(), middle.y() + travel))
-        painter.setPen(Qt.NoPen)
-        painter.setBrush(theme.blend(line, palette.color(QPalette.WindowText), 0.35))
-        for quarter in range(4):
-            painter.save()
-            painter.translate(middle)
-            painter.rotate(90.0 * quarter)
-            tip, wide = pad * 0.93, pad * 0.055
-            painter.drawPolygon(QPointF(0, -tip), QPointF(wide, wide * 1.5 - tip),
-                                QPointF(-wide, wide * 1.5 - tip))
-            painter.restore()
-
-    def _paint_knob(self, painter, middle, knob, radius):
-        """Paint what moves."""
-        palette = self.palette()
-        ink = theme.colour(theme.DRIVE if self._active else theme.MUTED, palette)
-        if self._knob != (0.0, 0.0):
-            painter.setPen(QPen(ink, max(3.0, radius * 0.16), Qt.SolidLine, Qt.RoundCap))
-            painter.drawLine(middle, knob)
-        away = self._dragging or self._knob != (0.0, 0.0)
-        painter.setPen(QPen(ink, 3))
-        painter.setBrush(ink if away else palette.color(QPalette.Button))
-        painter.drawEllipse(knob, radius, radius)
-        if not away:
-            painter.setPen(Qt.NoPen)
-            painter.setBrush(ink)
-            painter.drawEllipse(knob, radius * 0.28, radius * 0.28)
+    def _caption(self):
+        """Return the names of the robots that it drives, as far as they fit."""
+        metrics = self.fontMetrics()
+        room = self.width() - metrics.height()
+        many = '{} robots'.format(len(self.names))
+        return theme.fitting_text(metrics, (
+            *(listed(self.names, most) for most in (3, 2, 1)),
+            *((many,) if len(self.names) > 1 else words.name_ends(self.names[0]))),
+            room) if self.names else ''

@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Presses of STOP as the X server has them, for a process that is not the one which draws.
+"""Presses of STOP as reported by the X server, for a process other than the GUI's.
 
-Raw events (XInput 2, ``XI_Raw...`` of XI2proto.txt) tell of each button and key, whoever has
-grabbed pointer or keyboard and however short the press is; where the pointer was and who has the
-keyboard the server is asked at once. No Qt here: this runs beside it.
+Raw events (XInput 2, ``XI_Raw...`` of XI2proto.txt) report every button and key, even under a grab
+of pointer or keyboard and however short the press is; the position of the pointer and the window
+with the keyboard are then requested at once. No Qt here: this runs in parallel to it.
 """
 import collections
 import ctypes
@@ -19,9 +19,9 @@ _GENERIC_EVENT, _MAPPING_CHANGED = 35, 34
 _SHIFT_MASK, _LEFT_BUTTON_MASK = 1 << 0, 1 << 8
 _SPACE, _SHIFT_L, _SHIFT_R = 0x20, 0xffe1, 0xffe2
 _FIRST_KEY, _KEYS = 8, 248
-# The focus is where the pointer is.
+# The focus follows the pointer.
 _POINTER_ROOT = 1
-# Deeper than any window manager nests windows.
+# More than the depth of windows under any window manager.
 _DEPTH = 20
 
 
@@ -36,9 +36,9 @@ _Pointer = collections.namedtuple('_Pointer', 'child x y mask')
 
 
 class XPresses(XServer):
-    """The buttons and keys of one X server, that of ``DISPLAY``.
+    """The buttons and keys of the X server of ``DISPLAY``.
 
-    :raises XError: there is none, or it cannot tell
+    :raises XError: the server does not exist, or does not support raw events
     """
 
     def __init__(self):
@@ -52,7 +52,7 @@ class XPresses(XServer):
         self._select()
 
     def _select(self):
-        """Ask for the raw events."""
+        """Select the raw events."""
         xinput = load('libxcb-xinput.so.0')
         version = self.ask('xcb_input_xi_query_version', 2, 2, library=xinput)
         if version is None or struct.unpack_from('=HH', version, 8) < (2, 1):
@@ -62,7 +62,7 @@ class XPresses(XServer):
         self._xcb.xcb_flush(self._connection)
 
     def _read_keyboard(self):
-        """Learn which keys are the space bar and Shift."""
+        """Read the key codes of the space bar and Shift."""
         answer = self.ask('xcb_get_keyboard_mapping', _FIRST_KEY, _KEYS)
         if answer is None:
             raise XError('the X server does not tell its keys')
@@ -77,24 +77,24 @@ class XPresses(XServer):
                 self._shifts.add(_FIRST_KEY + key)
 
     def stops(self, places):
-        """Tell whether STOP has been pressed since the last call: a button of it, or Shift+Space.
+        """Return whether STOP was pressed since the last call, by a stop button or Shift+Space.
 
-        :param places: what :func:`mhri.driving.gui.stop_button.stop_places` returned
-        :raises XError: the X server has gone
+        :param places: the result of :func:`mhri.driving.gui.stop_button.stop_places`
+        :raises XError: the connection to the X server has ended
         """
         found = False
         while True:
             event = self.next_event()
             if event is None:
                 break
-            # Each is looked at: the state of Shift follows from all of them.
+            # Read all of them, since the state of Shift follows from all.
             found = self._is_stop(event, places) or found
         if self.has_gone():
             raise XError('the X server has gone')
         return found
 
     def _is_stop(self, event, places):
-        """Tell whether one event is a press of STOP."""
+        """Return whether one event is a press of STOP."""
         if event[0] & 0x7f == _MAPPING_CHANGED:
             self._read_keyboard()
         if event[0] & 0x7f != _GENERIC_EVENT:
@@ -111,11 +111,11 @@ class XPresses(XServer):
         return False
 
     def _is_shifted(self):
-        """Tell whether Shift is held, or latched by a desktop's sticky keys."""
+        """Return whether Shift is held, or latched by a desktop's sticky keys."""
         return bool(self._shifts_down or self._pointer().mask & _SHIFT_MASK)
 
     def _pointer(self, window=None):
-        """Return where the pointer is in a window, and in which child of it."""
+        """Return the pointer's position in a window, and the child window it is in."""
         answer = self.ask('xcb_query_pointer', window or self._root)
         return _Pointer(0, 0, 0, 0) if answer is None else _Pointer(
             *struct.unpack_from('=I4xhhH', answer, 12))
@@ -123,7 +123,7 @@ class XPresses(XServer):
     def _under_pointer(self):
         """Yield (window, x, y) of the windows under the pointer, the outermost first [px].
 
-        Of windows that lie over each other only the one in front is among them.
+        Of overlapping windows only the front one is included.
         """
         window = self._pointer().child
         for _ in range(_DEPTH):
@@ -134,13 +134,13 @@ class XPresses(XServer):
             window = at.child
 
     def _is_on_stop(self, places):
-        """Tell whether the pointer is on a stop button that is to be seen there."""
+        """Return whether the pointer is on a visible stop button."""
         return any(left <= x < left + width and top <= y < top + height
                    for window, x, y in self._under_pointer()
                    for left, top, width, height in places.get(window, ()))
 
     def _has_keyboard(self, places):
-        """Tell whether keys go to one of the windows."""
+        """Return whether one of the windows has the keyboard."""
         answer = self.ask('xcb_get_input_focus')
         window = struct.unpack_from('=I', answer, 8)[0] if answer else 0
         if window == _POINTER_ROOT:

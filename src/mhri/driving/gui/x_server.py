@@ -1,12 +1,16 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Questions to the X server that Qt does not ask, through libxcb. No Qt here."""
+"""Requests to the X server that Qt does not offer, through libxcb. No Qt here.
+
+Not python-xlib: it supports neither displays over IPv6 nor wildcards in ``~/.Xauthority``
+(containers), and leaves raw events as bytes, too.
+"""
 import ctypes
 import struct
 
 
 class XError(Exception):
-    """The X server cannot be asked; the text says why."""
+    """A request to the X server is impossible; the text gives the reason."""
 
 
 class _Cookie(ctypes.Structure):
@@ -14,9 +18,9 @@ class _Cookie(ctypes.Structure):
 
 
 def load(name):
-    """Return a library that Qt's own plugin for X11 needs as well.
+    """Load a library that Qt's own plugin for X11 needs as well.
 
-    :raises XError: it is not there
+    :raises XError: the library is missing
     """
     try:
         return ctypes.CDLL(name)
@@ -27,7 +31,7 @@ def load(name):
 class XServer:
     """A connection to the X server of ``DISPLAY``.
 
-    :raises XError: there is none
+    :raises XError: the server cannot be reached
     """
 
     def __init__(self):
@@ -39,18 +43,18 @@ class XServer:
             raise XError('no X server answers')
 
     def has_gone(self):
-        """Tell whether the connection has ended."""
+        """Return whether the connection has ended."""
         return bool(self._xcb.xcb_connection_has_error(self._connection))
 
     def fileno(self):
-        """Return the descriptor to wait for."""
+        """Return the file descriptor to wait for."""
         return self._xcb.xcb_get_file_descriptor(self._connection)
 
     def ask(self, function, *arguments, library=None):
-        """Return the bytes of an answer, None where there is none (a window that has gone).
+        """Return the bytes of a reply, None without one (e.g. for a closed window).
 
-        :param function: the C function that sends the question
-        :param library: the one that has it; default libxcb
+        :param function: the C function that sends the request
+        :param library: the library of that function; default libxcb
         """
         send, answer = (getattr(library or self._xcb, name) for name in (
             function, function + '_reply'))
@@ -60,7 +64,7 @@ class XServer:
             '=I', ctypes.string_at(place, 8), 4)[0])
 
     def extensions(self):
-        """Return the names of the extensions that the server has, none without an answer."""
+        """Return the names of the server's extensions, none without a reply."""
         answer = self.ask('xcb_list_extensions')
         names, place = set(), 32
         for _ in range(answer[1] if answer else 0):
@@ -70,18 +74,18 @@ class XServer:
         return frozenset(names)
 
     def next_event(self):
-        """Return the first 32 bytes of the next event, None where there is none."""
+        """Return the first 32 bytes of the next event, None if none is queued."""
         self._xcb.xcb_poll_for_event.restype = ctypes.c_void_p
         place = self._xcb.xcb_poll_for_event(self._connection)
         return None if not place else _take(place, 32)
 
     def close(self):
-        """End the connection."""
+        """Close the connection."""
         self._xcb.xcb_disconnect(self._connection)
 
 
 def _take(place, size):
-    """Copy what xcb has allocated, and free it."""
+    """Copy memory allocated by xcb, and free it."""
     data = ctypes.string_at(place, size)
     ctypes.CDLL(None).free(ctypes.c_void_p(place))
     return data

@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Says on ``/mux/advice`` what keeps the active source from driving, and what to do about it."""
+"""Determines why the active source cannot drive, and the remedy."""
 import rospy
-from std_msgs.msg import String
 
-from mhri.driving.advice import advice, Heard, MESSAGE_TYPES
+from mhri.base.reasons import Reason, SOURCE
+from mhri.driving.advice import advice, MESSAGE_TYPES, SourceStatus
 from mhri.graph.ros.master_api import MasterApi, MasterError
 from mhri.graph.ros.worker import Worker
 
@@ -12,43 +12,45 @@ PERIOD_S = 1.0
 
 
 class Advice:
-    """Publishes ``/mux/advice`` (``std_msgs/String``, latched: a sentence, '' for none) on change.
+    """Passes advice on when it changes, and logs its text.
 
-    It asks the master for the type of a topic only while it hears nothing from the source.
+    It asks the master for the type of a topic only while the source is silent.
 
     :param facts: returns (active :class:`mhri.driving.ros.source_topic.SourceTopic`, waits_for)
+    :param on_advice: called with the result of :func:`mhri.driving.advice.advice`, on a thread of
+        this object
     """
 
-    def __init__(self, facts):
+    def __init__(self, facts, on_advice):
         self._facts = facts
-        self._said = None
+        self._on_advice = on_advice
+        self._said = '', ''
         self._api = MasterApi(rospy.get_name(), timeout_s=1.0)
-        self._topic = rospy.Publisher('/mux/advice', String, queue_size=10, latch=True)
         self._worker = Worker('advice', self._advise, PERIOD_S)
 
     def start(self):
-        """Begin, on a thread of its own."""
+        """Start a thread for it."""
         self._worker.start()
 
     def stop(self):
-        """End; returns at once."""
+        """Stop the thread; return at once."""
         self._worker.stop()
 
     def _advise(self):
-        """Look once, and publish what has changed."""
+        """Determine the advice, and pass it on if it has changed."""
         topic, waits_for = self._facts()
         connected = topic.connected()
-        stranger = self._stranger(topic.source, connected) if waits_for == 'source' else None
-        words = advice(topic.source, waits_for, Heard(
+        stranger = self._stranger(topic.source, connected) if waits_for == SOURCE else None
+        said = code, about = advice(topic.source, waits_for, SourceStatus(
             frozenset(connected), stranger, topic.spoke, topic.refusal, topic.rival))
-        if words != self._said:
-            self._said = words
-            self._topic.publish(data=words)
-            if words:
-                rospy.logwarn('%s', words)
+        if said != self._said:
+            self._said = said
+            self._on_advice(code, about)
+            if code:
+                rospy.logwarn('%s: %s', topic.source.label, Reason(code, (about,)).sentence)
 
     def _stranger(self, source, connected):
-        """Return (node, message type) of a publisher of another type than the source's."""
+        """Return (node, message type) of a publisher with a type other than the source's."""
         try:
             state, types = self._api.call_many([('getSystemState',), ('getTopicTypes',)])
         except MasterError:

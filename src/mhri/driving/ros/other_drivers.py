@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Who else commands a robot: the other publishers of its velocity topics."""
+"""Other commanders of a robot: the other publishers of its velocity topics."""
 import struct
 import time
 
@@ -9,28 +9,28 @@ import rospy
 
 from mhri.graph.ros.rospy_inside import caller_of, others_only, publishers, type_of, unsubscribe
 
-# A node that said nothing for so long commands no more [s].
+# A node silent for this long no longer counts as commanding [s].
 HEARD_S = 1.0
-# So many nodes are told apart, and so many topics are read.
+# Maximum numbers of distinguished nodes and of subscribed topics.
 MAX_NODES, MAX_TOPICS = 16, 16
 _COMPONENTS = struct.Struct('<6d')
 
 
 def _is_zero(message):
-    """Tell whether the bytes of a message (``rospy.AnyMsg``) are a Twist of zeros."""
+    """Return whether the bytes of a message (``rospy.AnyMsg``) are a Twist of zeros."""
     if type_of(message) != Twist._type or len(message._buff) != _COMPONENTS.size:
         return False
     return not any(_COMPONENTS.unpack(message._buff))
 
 
 class OtherDrivers:
-    """Subscribes velocity topics of a robot, and takes note of everybody but this node.
+    """Subscribes velocity topics of a robot, and tracks all publishers but this node.
 
-    Messages of any type count. Not thread-safe but for the callbacks.
+    Messages of any type count. Not thread-safe except for the callbacks.
 
-    :param on_motion: called, on a ROS thread, with the caller id of a node that has just sent
-        anything but a zero, and the topic
-    :param clock: function that returns seconds, monotonic
+    :param on_motion: called, on a ROS thread, with the caller id of a node that has just sent a
+        nonzero message, and the topic
+    :param clock: function that returns monotonic seconds
     """
 
     def __init__(self, on_motion, clock=time.monotonic):
@@ -41,7 +41,7 @@ class OtherDrivers:
         self._met = set()
 
     def listen(self, topics):
-        """Subscribe absolute topics that are not subscribed yet (blocking: asks the master)."""
+        """Subscribe absolute topics that are not subscribed yet (blocking: calls the master)."""
         for topic in topics:
             if topic not in self._subscribers and len(self._subscribers) < MAX_TOPICS:
                 others_only(topic)
@@ -61,7 +61,7 @@ class OtherDrivers:
             self._on_motion(caller, topic)
 
     def connected(self):
-        """Return {(caller id, topic)} of the other publishers, whether they speak or not."""
+        """Return {(caller id, topic)} of the connected other publishers, even silent ones."""
         own = rospy.get_name()
         found = {(caller, topic) for topic, subscriber in list(self._subscribers.items())
                  for caller in publishers(subscriber) if caller != own}
@@ -70,20 +70,20 @@ class OtherDrivers:
         return found
 
     def out_of_reach(self, registered):
-        """Return those that the master knows and that were never connected.
+        """Return the registered publishers that were never connected.
 
-        Whoever was and is no longer has ended, whatever the master knows.
+        A node that is no longer connected has ended, even if the master still lists it.
 
         :param registered: {(caller id, topic)}
         """
         return registered - self._met
 
     def heard(self, now):
-        """Return {(caller id, topic)} of those that spoke within the last second."""
+        """Return {(caller id, topic)} of the publishers of the last second."""
         return {key for key, at in list(self._heard_at.items()) if now - at < HEARD_S}
 
     def close(self):
-        """Stop listening (blocking: it asks the master)."""
+        """Unsubscribe (blocking: calls the master)."""
         subscribers, self._subscribers = self._subscribers, {}
         for subscriber in subscribers.values():
             unsubscribe(subscriber)

@@ -1,19 +1,18 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The topic of one source: who publishes there, who may, and who has gone."""
+"""The topic of one source, and its connected, accepted and lost publishers."""
 import time
 
 from geometry_msgs.msg import Twist
 import rospy
 
 from mhri.devices.ros.input_node import LOST
-from mhri.driving.ownership import Ownership
 from mhri.driving.sources import TWIST
-from mhri.graph.ros.prompt import hear_promptly
+from mhri.graph.ros.non_blocking import read_inline
 from mhri.graph.ros.rospy_inside import caller_of, link_of, publishers
 from mhri.robots.ros.convert import ShortJoy
 
-# The longest text taken from a message.
+# Maximum length of a text taken from a message.
 LONGEST_TEXT = 200
 _LATELY_S = 3.0
 
@@ -22,14 +21,11 @@ class SourceTopic:
     """Subscribes a source's topic (``sensor_msgs/Joy`` or ``geometry_msgs/Twist``).
 
     :param source: :class:`mhri.driving.sources.Source`
-    :param strangers: :class:`mhri.graph.ros.in_force.Strangers`, for further publishers
-    :param clock: function returning seconds that never go back
+    :param clock: function that returns monotonic seconds
     """
 
-    def __init__(self, source, strangers, clock=time.monotonic):
+    def __init__(self, source, clock=time.monotonic):
         self.source = source
-        self._strangers = strangers
-        self.ownership = Ownership()
         self._clock = clock
         self._subscriber = None
         self._is_twist = source.kind == TWIST
@@ -41,7 +37,7 @@ class SourceTopic:
     def open(self, on_message):
         """Subscribe; ``on_message(message, self)`` is called on rospy's threads."""
         kind = Twist if self._is_twist else ShortJoy
-        self._subscriber = hear_promptly(rospy.Subscriber(
+        self._subscriber = read_inline(rospy.Subscriber(
             self.source.topic, kind, on_message, callback_args=self, queue_size=1,
             tcp_nodelay=True))
 
@@ -49,16 +45,12 @@ class SourceTopic:
         """Return the caller ids of the connected publishers."""
         return publishers(self._subscriber) if self._subscriber else set()
 
-    def admits(self, message):
-        """Tell whether a message counts; a second publisher's does not."""
-        caller = caller_of(message)
-        # Its own connection may not be in rospy's list yet.
-        if not self.ownership.admits(caller, self.connected() | {caller}):
-            self._rival = (self._clock(), caller)
-            self._strangers.refuse(caller, self.source.topic)
-            return False
-        self._heard = caller
-        return True
+    def on_heard(self, caller, owner):
+        """Store the publisher of a message; one that is not the owner is a rival."""
+        if caller == owner:
+            self._heard = caller
+        else:
+            self._rival = self._clock(), caller
 
     def device_of(self, message):
         """Return (identity of the device, its ``header.frame_id``, whether it is lost).
@@ -81,7 +73,7 @@ class SourceTopic:
         return found
 
     def has_gone(self):
-        """Tell, once, that the publisher listened to is no longer connected."""
+        """Return whether the accepted publisher has disconnected, once for each time."""
         if self._heard is None or self._heard in self.connected():
             return False
         self._links.pop(self._heard, None)
@@ -89,23 +81,22 @@ class SourceTopic:
         return True
 
     def refuse(self, reason):
-        """Note why a message could not be used, '' if it could."""
+        """Store why a message could not be used, '' if it was used."""
         self._refusal = (self._clock(), str(reason)[:LONGEST_TEXT]) if reason else None
 
     @property
     def spoke(self):
-        """Whether anything was heard from its publisher."""
+        """Whether a message of the accepted publisher was received."""
         return self._heard is not None
 
     @property
     def refusal(self):
-        """Why the newest message could not be used, '' if it could or is long ago."""
+        """Why the newest message could not be used, '' if it was used or is long ago."""
         said = self._refusal
         return said[1] if said and self._clock() - said[0] < _LATELY_S else ''
 
     @property
     def rival(self):
-        """(node, owner) if a second publisher was refused lately, else None."""
+        """A second publisher that was refused recently, else ''."""
         said = self._rival
-        return (said[1], self.ownership.owner) if said and self._clock() - said[0] < _LATELY_S \
-            else None
+        return said[1] if said and self._clock() - said[0] < _LATELY_S else ''

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Suspends and resumes the input nodes as the mode leaves and enters them; never blocks."""
+"""Suspends and resumes the input nodes when the mode changes; never blocks."""
 import threading
 
 import rospy
@@ -12,10 +12,10 @@ RETRY_S = 1.0
 
 
 class _Caller:
-    """Calls one ``set_suspended`` on a thread of its own, so that no node waits for another.
+    """Calls one ``set_suspended`` on its own thread, so that no node delays another.
 
-    A wish is kept until the node has answered. While a node that is not running is wanted, it is
-    asked again every second; otherwise no call is needed, since an input node starts suspended.
+    A request is kept until the node has answered. A node to be resumed that is not running is
+    called again every second; one to be suspended needs no call, since it starts suspended.
     """
 
     def __init__(self, service):
@@ -27,7 +27,7 @@ class _Caller:
         threading.Thread(target=self._run, name='suspend ' + service, daemon=True).start()
 
     def wish(self, suspended):
-        """Set the wish; returns at once."""
+        """Set the request; return at once."""
         with self._changed:
             self._wish = suspended
             self._changed.notify()
@@ -46,9 +46,9 @@ class _Caller:
                     self._changed.wait(RETRY_S)
 
     def _call(self, suspended):
-        """Call once; return whether the wish is settled."""
+        """Call the service once; return whether the request is done."""
         try:
-            # rospy's proxy would log an error each time it finds nobody.
+            # rospy's proxy would log an error each time the service does not exist.
             if not self._api.call_many([('lookupService', self._service)])[0]:
                 self.state = 'its node is not running'
                 return suspended
@@ -67,7 +67,7 @@ class Suspender:
     """The ``set_suspended`` services of all input nodes.
 
     :param services: names of services of type ``mhri/SetSuspended``
-    :param awake: those that are never suspended
+    :param awake: the services that are never suspended
     """
 
     def __init__(self, services, awake=()):
@@ -76,16 +76,16 @@ class Suspender:
         self._active = None
 
     def state(self, service):
-        """Return what is known about an input node, in words."""
+        """Describe the state of an input node."""
         return self._callers[service].state
 
     def activate(self, service):
-        """Resume one service (None: none of them) and suspend all the others."""
+        """Resume one service (None for no service) and suspend all the others."""
         self._active = service
         for name, caller in self._callers.items():
             caller.wish(name != service and name not in self._awake)
 
     def resume_again(self):
-        """Ask the active node once more: it is silent, and may have been restarted."""
+        """Resume the active node again: it is silent, and may have been restarted."""
         if self._active is not None:
             self._callers[self._active].wish(False)

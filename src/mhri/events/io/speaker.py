@@ -1,48 +1,44 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The one device here that is written to: tones through SDL's mixer (pygame), in a child process.
+"""Plays tones through SDL's mixer (pygame), in a child process.
 
-Loading pygame takes 0.3 s, opening a device of a busy sound server may take seconds, and where
-there is none ALSA writes a page to the terminal: nothing for a process that drives robots.
+Loading pygame takes 0.3 s, opening the device of a busy sound server may take seconds, and without
+a device ALSA fills the terminal: too much for a process that drives robots.
 """
-import json
 import logging
 import os
-import select
-import subprocess
-import sys
 import threading
 
-from mhri.devices.io import child
+from mhri.devices.io.child import Child, parent
 from mhri.devices.io.reader import DeviceAbsent
 from mhri.events.tones import samples, TONES, urgency
 
 RATE_HZ = 22050
 _BUFFER = 512
-# The device is held only while it sounds: another program may want it, or another be plugged in.
+# The device is closed after this idle time, as other programs may need it or it may be replaced.
 _HOLD_S = 5.0
 _RESTART_S = 10.0
 _LOG = logging.getLogger(__name__)
 
 
 class Speaker:
-    """Plays tones; every method returns at once. The first tone starts the child at the latest.
+    """Plays tones; every method returns at once. The first tone starts the child if needed.
 
-    :param on_absent: called with a sentence, on a thread of its own, the first time that no tone
-        can be heard; later tones are tried all the same
+    :param on_absent: called once with a sentence, on its own thread, at the first failure to play
+        a tone; later tones are still attempted
     """
 
     def __init__(self, on_absent=lambda text: None):
         self._on_absent = on_absent
         self._lock = threading.Lock()
         self._started = False
-        self._process = None
+        self._child = None
         self._waiting = ''
-        self._told = False
+        self._reported = False
         self._closed = threading.Event()
 
     def start(self):
-        """Start the child in the background, where that has not been done."""
+        """Start the child in the background, unless already started."""
         with self._lock:
             if self._started or self._closed.is_set():
                 return self
@@ -51,70 +47,66 @@ class Speaker:
         return self
 
     def play(self, tone):
-        """Play one of the tones; a less urgent one is left out while another is heard."""
+        """Play a tone; a less urgent tone is dropped while another one is playing."""
         self.start()
         with self._lock:
-            if self._process is None:
+            if self._child is None:
                 self._waiting = max(self._waiting, tone, key=urgency)
                 return
             self._send(tone)
 
     def _send(self, tone):
-        """Tell the child; the lock is held."""
+        """Send a tone to the child (under the lock)."""
         try:
-            os.write(self._process.stdin.fileno(), tone.encode() + b'\n')
-        except OSError as error:  # it has ended, or hangs with a full pipe
+            self._child.send(tone)
+        except OSError as error:  # the child has ended, or hangs
             _LOG.debug('not played: %s', error)
 
     def close(self):
         """End the child."""
         self._closed.set()
         with self._lock:
-            if self._process is not None:
-                self._process.kill()
+            if self._child is not None:
+                self._child.process.kill()
 
     def _run(self):
-        """Keep the child running; one that ends by itself knows that nothing can be done."""
+        """Restart the child until it exits with 0, which means that it can never play."""
         while not self._closed.is_set():
             try:
                 if self._serve() == 0:
                     return
             except OSError as error:
-                self._tell('the player cannot be started: {}'.format(error))
+                self._report('the player cannot be started: {}'.format(error))
             self._closed.wait(_RESTART_S)
 
     def _serve(self):
-        """Start a child and hear what it says; return its exit status."""
-        process = subprocess.Popen(
-            child.command('mhri.events.io.speaker'), stdin=subprocess.PIPE, stdout=subprocess.PIPE,
-            stderr=subprocess.DEVNULL)
-        os.set_blocking(process.stdin.fileno(), False)
+        """Start a child and read its messages; return its exit status."""
+        child = Child('mhri.events.io.speaker')
         with self._lock:
-            self._process = process
+            self._child = child
             if self._waiting:
                 self._send(self._waiting)
                 self._waiting = ''
             if self._closed.is_set():
-                process.kill()
-        for line in process.stdout:
-            absent = json.loads(line.decode()).get('absent')
-            if absent:
-                self._tell(absent)
-        with self._lock:
-            self._process = None
-            process.stdin.close()
-        process.stdout.close()
-        return process.wait()
+                child.process.kill()
+        try:
+            while True:
+                for absent in child.messages(None):
+                    self._report(absent)
+        except EOFError:
+            with self._lock:
+                self._child = None
+            return child.end(_RESTART_S)
 
-    def _tell(self, problem):
-        """Say once that there is no sound."""
-        if not self._told and not self._closed.is_set():
-            self._told = True
+    def _report(self, problem):
+        """Report the first problem with sound."""
+        if not self._reported and not self._closed.is_set():
+            self._reported = True
             self._on_absent(problem)
 
 
 class Player:
-    """The mixer in the child: opens the device when a tone is to be heard, and gives it back.
+    """The mixer in the child, which opens the device for a tone and closes it later.
 
     :raises DeviceAbsent: pygame is missing
     """
@@ -133,18 +125,18 @@ class Player:
 
     @property
     def is_open(self):
-        """Whether the device is held."""
+        """Whether the device is open."""
         return self._channel is not None
 
     @property
     def is_busy(self):
-        """Whether a tone is being heard."""
+        """Whether a tone is being played."""
         return self.is_open and self._channel.get_busy()
 
     def open(self):
-        """Open the device; does nothing if it is open.
+        """Open the device, unless already open.
 
-        :raises DeviceAbsent: there is none, or it cannot be used
+        :raises DeviceAbsent: no device is available or usable
         """
         if self.is_open:
             return
@@ -161,7 +153,7 @@ class Player:
         self._channel = self._mixer.Channel(0)
 
     def play(self, tone):
-        """Play a tone, unless one that is as urgent is being heard.
+        """Play a tone, unless one of at least the same urgency is playing.
 
         :raises DeviceAbsent: see :meth:`open`
         """
@@ -174,50 +166,40 @@ class Player:
         self._channel.play(self._sounds[tone])
 
     def close(self):
-        """Give the device back."""
+        """Close the device."""
         self._channel = None
         self._mixer.quit()
 
 
-def _say(**words):
-    """Tell the parent."""
-    sys.stdout.write(json.dumps(words) + '\n')
-    sys.stdout.flush()
-
-
-def _follow(player):
-    """Play what comes from the standard input, one tone a line, until it ends."""
-    held = b''
+def _follow(player, screen):
+    """Play the requested tones until the parent ends."""
     while True:
-        if not select.select([0], [], [], _HOLD_S)[0]:
-            if player.is_open and not player.is_busy:
-                player.close()
-            continue
-        data = os.read(0, 4096)
-        if not data:
-            return
-        *lines, held = (held + data).split(b'\n')
-        # What has piled up is one tone: the most urgent.
-        wanted = [line.decode('ascii', 'replace') for line in lines]
+        wanted = screen.messages(_HOLD_S)
+        if not wanted and player.is_open and not player.is_busy:
+            player.close()
+        # Of queued tones only the most urgent one is played.
         for tone in sorted(set(wanted) & set(TONES), key=urgency)[-1:]:
             try:
                 player.play(tone)
             except DeviceAbsent as problem:
-                _say(absent=str(problem))
+                screen.send(str(problem))
 
 
 def main():
-    """Be the child: see :class:`Speaker`; ends with 0 if no try is worth another."""
+    """Run the child of :class:`Speaker`; exit with 0 if a restart is useless."""
+    screen = parent()
     try:
         player = Player()
     except DeviceAbsent as problem:
-        _say(absent=str(problem))
+        screen.send(str(problem))
         return
     try:
-        player.open()
-        _say(device=True)
-    except DeviceAbsent as problem:
-        _say(absent=str(problem))
-    _follow(player)
-    # Not through what SDL does at the end: a device that hangs would keep it.
+        try:
+            player.open()
+        except DeviceAbsent as problem:
+            screen.send(str(problem))
+        _follow(player, screen)
+    except (EOFError, OSError):
+        pass  # the parent has ended
+    # Skip SDL's clean-up: it could hang with the device.
     os._exit(0)

@@ -6,7 +6,7 @@ import threading
 import diagnostic_updater
 import rospy
 
-from mhri.graph.ros.quiet import quiet_repeats
+from mhri.graph.ros.log_throttle import quiet_repeats
 
 
 def publish_diagnostics(tasks):
@@ -15,7 +15,7 @@ def publish_diagnostics(tasks):
     :param tasks: {name: function that fills a ``DiagnosticStatusWrapper`` and returns it}
     :returns: a ``threading.Event``; set it to end them earlier
     """
-    # Every node of mhri passes here.
+    # Every node of mhri calls this.
     quiet_repeats()
     updater = diagnostic_updater.Updater()
     updater.setHardwareID('mhri')
@@ -28,7 +28,7 @@ def publish_diagnostics(tasks):
         """Update until the node ends.
 
         Do not call update(), which subscribes to a parameter at the master each time: a node that
-        is just ending would thereby register its name anew, and end the node that took the name
+        is shutting down would thereby register its name again, and end the node that took the name
         over.
         """
         while not done.wait(1.0):

@@ -11,12 +11,12 @@ PERIOD_S = 1.0
 
 
 class LiveParameter:
-    """Asks the master for a parameter once a second, on its own thread, while wanted.
+    """Reads a parameter from the master once a second, on its own thread, while wanted.
 
     :param name: e.g. ``~device``
     :param default: its value if it is not set
     :param apply: function called with the value, at first and after every change
-    :param wanted: ``threading.Event``; nothing is asked while it is not set
+    :param wanted: ``threading.Event``; the parameter is read only while it is set
     """
 
     def __init__(self, name, default, apply, wanted):
@@ -26,7 +26,7 @@ class LiveParameter:
         self._wanted = wanted
 
     def start(self):
-        """Take the present value, and keep watching; call it after ``rospy.init_node``."""
+        """Apply the current value, and start watching; call it after ``rospy.init_node``."""
         self._value = rospy.get_param(self._name, self._default)
         self._apply(self._value)
         threading.Thread(target=self._run, name=self._name, daemon=True).start()
@@ -41,14 +41,14 @@ class LiveParameter:
             try:
                 self._look(api)
             except MasterError as error:
-                # The last value stays; the master's watch reports that it is gone.
+                # Keep the last value; MasterWatch reports the lost master.
                 rospy.logdebug('%s: %s', self._name, error)
             done.wait(PERIOD_S)
 
     def _look(self, api):
-        """Ask once.
+        """Read the parameter once.
 
-        :raises MasterError: no answer
+        :raises MasterError: the master does not answer
         """
         known, value = api.call_many([('hasParam', self._name), ('getParam', self._name)])
         value = value if known else self._default

@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A log that nobody has to wait for.
+"""A log that never blocks the logging thread.
 
 rospy writes each line on the thread that logs it: to the terminal, to the log file, to /rosout. A
-terminal that takes nothing (Ctrl-S, a pipe that nobody reads) or a hanging disk would hold up that
-thread, and with it the zero that it had to send next.
+blocked terminal (Ctrl-S, a pipe without a reader) or a hanging disk would block that thread, and
+delay a zero that it has to send next.
 """
 import atexit
 import logging
@@ -18,20 +18,20 @@ import rospy
 
 from mhri.graph.ros.rospy_inside import is_initialised
 
-# Lines that may wait for one destination; any more are counted, not kept.
+# Maximum number of lines waiting for one destination; further ones are counted, not kept.
 QUEUE_SIZE = 1000
-# How long an ending program waits for its last lines [s].
+# How long a program waits for its last lines when it ends [s].
 LAST_WORDS_S = 0.5
-# A program that has not ended so long after its shutdown waits for an output that takes nothing:
-# what is written past these handlers (the traceback of a thread, Python's own last flush) blocks.
+# A program that has not ended this long after its shutdown [s] is blocked by an output: writes that
+# bypass these handlers (the traceback of a thread, Python's own last flush) block.
 ENDED_WITHIN_S = 10.0
 
 
-class PatientHandler(logging.Handler):
-    """Passes every record to another handler, on its own thread; never waits.
+class QueuedLogHandler(logging.Handler):
+    """Passes every record to another handler, on its own thread; never blocks.
 
-    :param handler: the one that may block
-    :param size: the most records that wait
+    :param handler: the handler that may block
+    :param size: maximum number of waiting records
     """
 
     def __init__(self, handler, size=QUEUE_SIZE):
@@ -43,27 +43,27 @@ class PatientHandler(logging.Handler):
         threading.Thread(target=self._run, name='log', daemon=True).start()
 
     def createLock(self):
-        """Make no lock: the queue has its own."""
+        """Create no lock: the queue has its own."""
         self.lock = None
 
     def emit(self, record):
-        """Take a record; count one too many."""
+        """Queue a record; count those that are dropped."""
         try:
-            # Format it now: what it speaks of may change before it is written.
+            # Format it now: its arguments may change before it is written.
             record.msg, record.args = record.getMessage(), None
             self._waiting.put_nowait(record)
         except queue.Full:
             with self._counting:
                 self._lost += 1
-        except Exception:  # text and arguments do not match: logging itself reports that
+        except Exception:  # text and arguments do not match: logging reports that itself
             self.handleError(record)
 
     def written(self):
-        """Tell whether nothing waits and nothing is being written."""
+        """Return whether all records are written."""
         return not self._waiting.unfinished_tasks
 
     def _run(self):
-        """Write the waiting records, and how many are missing."""
+        """Write the waiting records, and the number of dropped ones."""
         while True:
             record = self._waiting.get()
             with self._counting:
@@ -77,9 +77,9 @@ class PatientHandler(logging.Handler):
 
 
 class _Stderr(logging.Handler):
-    """Writes what is logged before rospy has set up its handlers.
+    """Writes records logged before rospy has set up its handlers.
 
-    It has no lock: setting them up asks every handler there is for its own, and would wait.
+    It has no lock: the setup acquires the lock of every handler, and would wait.
     """
 
     def createLock(self):
@@ -90,9 +90,9 @@ class _Stderr(logging.Handler):
 
 
 def start_screen_node(name, argv):
-    """Start the node of a screen, which goes on where that is ended; its log holds up nobody.
+    """Start the node of a screen, which survives the end of the node; its log never blocks.
 
-    In rqt, which has started one, this does nothing: the log is rqt's, too.
+    In rqt, which has already started a node, this does nothing: the log is rqt's, too.
     """
     if not is_initialised():
         rospy.init_node(name, argv=argv, disable_signals=True)
@@ -102,22 +102,22 @@ def start_screen_node(name, argv):
 def install(lives_on=False):
     """Put a queue in front of every log handler of the program; call it after init_node.
 
-    One that logs before that, on a thread that must not wait, calls it at its start as well.
+    A program that logs before that, on a thread that must not block, also calls it at its start.
 
-    :param lives_on: whether the program goes on where its node is ended
-    :returns: the :class:`PatientHandler` of each; none if they are in place already
+    :param lives_on: whether the program survives the end of its node
+    :returns: the :class:`QueuedLogHandler` of each; none if they are in place already
     """
     patient = {}
-    if not isinstance(logging.lastResort, PatientHandler):
+    if not isinstance(logging.lastResort, QueuedLogHandler):
         before = logging.lastResort
-        logging.lastResort = patient[before] = PatientHandler(_Stderr(logging.WARNING))
+        logging.lastResort = patient[before] = QueuedLogHandler(_Stderr(logging.WARNING))
     named = logging.root.manager.loggerDict.values()
     for logger in [logging.root] + [item for item in named if isinstance(item, logging.Logger)]:
         for handler in list(logger.handlers):
-            if isinstance(handler, PatientHandler) or type(handler).__name__ == 'NullHandler':
+            if isinstance(handler, QueuedLogHandler) or type(handler).__name__ == 'NullHandler':
                 continue
             if handler not in patient:
-                patient[handler] = PatientHandler(handler)
+                patient[handler] = QueuedLogHandler(handler)
             logger.removeHandler(handler)
             logger.addHandler(patient[handler])
     if patient:
@@ -128,16 +128,16 @@ def install(lives_on=False):
 
 
 def _end_in_time():
-    """End the program, whatever holds it up."""
+    """End the program even if an output is blocked."""
     timer = threading.Timer(ENDED_WITHIN_S, os._exit, (0,))
     timer.daemon = True
     timer.start()
 
 
 def _finish(handlers):
-    """Wait a little for the last lines; leave without them if nobody takes them.
+    """Wait briefly for the last lines; exit without them if they cannot be written.
 
-    Python's own end would wait for ever: it asks for the lock of a stream that is being written.
+    Python's own exit would wait for ever for the lock of a stream that is being written.
     """
     deadline = time.monotonic() + LAST_WORDS_S
     while not all(handler.written() for handler in handlers):

@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Asks the ROS master directly, with a time limit on every call.
+"""Calls the ROS master directly, with a timeout on every call.
 
-rospy's own master proxy has no limit: a master that is out of reach (silent, not refusing) blocks
-the caller for minutes.
+rospy's own master proxy has no timeout: an unreachable master (silent, not refusing) blocks the
+caller for minutes.
 """
 import contextlib
 import http.client
@@ -13,13 +13,13 @@ import xmlrpc.client
 import rosgraph
 
 ERRORS = (OSError, xmlrpc.client.Error, http.client.HTTPException)
-# xmlrpc also raises these if something else answers there: no XML, no text, not three values.
+# xmlrpc also raises these if another program answers there: no XML, no text, not three values.
 _NONSENSE = (xml.parsers.expat.ExpatError, ValueError, TypeError, LookupError, AttributeError,
              ArithmeticError)
 
 
 class MasterError(Exception):
-    """The master cannot be reached, or refused the call; the text says which and where."""
+    """The master is unreachable, or refused the call; the text has the reason and the address."""
 
 
 class TimedTransport(xmlrpc.client.Transport):
@@ -39,8 +39,8 @@ class TimedTransport(xmlrpc.client.Transport):
 class MasterApi:
     """Calls to the master (http://wiki.ros.org/ROS/Master_API), one at a time, not thread-safe.
 
-    :param caller_id: the name under which to ask
-    :param timeout_s: the most one call may take [s]
+    :param caller_id: caller id of the calls
+    :param timeout_s: timeout of one call [s]
     :param uri: the master; default ``ROS_MASTER_URI``
     """
 
@@ -76,7 +76,7 @@ class MasterApi:
 
     @contextlib.contextmanager
     def _errors(self):
-        """Turn what a call may raise into the one named error."""
+        """Convert all errors of a call into :exc:`MasterError`."""
         try:
             yield
         except ERRORS as error:
@@ -86,8 +86,17 @@ class MasterApi:
             raise MasterError('what answers at {} is not a ROS master: {}'.format(
                 self.uri, repr(error)[:200]))
 
+    def publisher_uris(self, topic):
+        """Return the URIs of the nodes that publish a topic.
+
+        :raises MasterError: the master cannot be reached
+        """
+        nodes = dict(self.call('getSystemState')[0]).get(topic, ())
+        uris = self.call_many([('lookupNode', node) for node in nodes]) if nodes else []
+        return [uri for uri in uris if uri]
+
     def node_uri(self, name):
-        """Return the URI under which a node is registered, or None if it is not.
+        """Return the registered URI of a node, None if it is not registered.
 
         :raises MasterError: the master cannot be reached
         """

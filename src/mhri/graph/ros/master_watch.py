@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Watches the master, and registers this node again when the master has forgotten it.
+"""Watches the master, and registers this node again after a restart of the master.
 
-rospy registers once and never looks back: after a restart of the master its nodes live on, but
-nobody can find them (robot_upstart#35). Existing connections outlive the master; new ones need it.
+rospy registers only once: after a restart of the master its nodes live on, but cannot be found
+(robot_upstart#35). Existing connections outlive the master; new ones need it.
 """
 import threading
 import time
@@ -11,34 +11,34 @@ import time
 import rospy
 
 from mhri.graph.ros.master_api import MasterApi, MasterError
-from mhri.graph.ros.rospy_inside import is_ending, meet_publishers, never_ask_for, registrations
+from mhri.graph.ros.rospy_inside import is_ending, connect_publishers, never_ask_for, registrations
 
 
 def log_without_master():
-    """Keep rospy from asking the master for every line it logs; call it after ``rospy.init_node``.
+    """Keep rospy from calling the master for every log line; call it after ``rospy.init_node``.
 
     rospy adds the names of the topics to each line for /rosout, unless a parameter forbids it;
-    while that parameter is not set, rospy subscribes to it anew every time. A master out of reach
-    would hold up whoever logs; and a node whose name was taken over would take it back, whereupon
-    the master ends both (ros_comm#2018).
+    while that parameter is not set, rospy subscribes to it again every time. An unreachable master
+    would block the logging thread; and a node whose name was taken over would take it back,
+    whereupon the master ends both (ros_comm#2018). That subscription outlives the node: at its next
+    start the master ends the node that uses the old address by then.
     """
     name = '/rosout_disable_topics_generation'
     never_ask_for(name, bool(rospy.get_param(name, False)))
 
 
 class MasterWatch:
-    """Asks the master again and again whether it lives and knows this node.
+    """Checks periodically whether the master is alive and has this node registered.
 
     It calls ``on_lost(reason)``, on its own thread, once when the master refused two calls in a
     row, or did not answer one for ``patience_s``: at most ``period_s`` plus ``patience_s`` after it
-    hung. A master restarted between two calls counts as lost, too. Another master process, which
-    did not know this node, gets its registrations and ``parameters``. ``lost`` tells whether the
-    master is lost now.
+    hung. A master restarted between two calls counts as lost, too. A new master process without
+    this node gets its registrations and ``parameters``. ``lost`` is whether the master is lost now.
 
     :param parameters: {absolute name: value} that this node owns and restores
     :param period_s: the time between two calls [s]
-    :param patience_s: the longest that a call may take [s]; a slower one counts as a lost master,
-        so allow about one second at least for a busy computer
+    :param patience_s: timeout of a call [s]; a slower one counts as a lost master, so allow at
+        least about one second for a busy computer
     """
 
     def __init__(self, on_lost=lambda reason: None, parameters=None, period_s=0.5,
@@ -54,7 +54,7 @@ class MasterWatch:
         self._thread = threading.Thread(target=self._run, name='master_watch', daemon=True)
 
     def start(self):
-        """Begin watching; call it after ``rospy.init_node``."""
+        """Start watching; call it after ``rospy.init_node``."""
         log_without_master()
         for name, value in self.parameters.items():
             rospy.set_param(name, value)
@@ -62,13 +62,13 @@ class MasterWatch:
         return self
 
     def stop(self):
-        """End the thread; returns at once."""
+        """Stop the thread; return at once."""
         self._done.set()
 
     def set_parameter(self, name, value):
         """Set a parameter now (blocking, so never on the GUI thread) and after every restart."""
         self.parameters[name] = value
-        # Not the watch's own proxy, which is its thread's.
+        # Not with the watch's own proxy, which belongs to its thread.
         MasterApi(rospy.get_name(), timeout_s=1.0).call('setParam', name, value)
 
     def _run(self):
@@ -80,7 +80,7 @@ class MasterWatch:
                 self._miss(str(error), time.monotonic() - begun >= self._patience_s)
 
     def _look(self):
-        """Ask once; register again where needed."""
+        """Check once; register again if needed."""
         own = rospy.get_node_uri()
         # In this order: the second call sees a node that takes the name over between the two. The
         # other way round it would look like a master that has forgotten this node.
@@ -89,7 +89,7 @@ class MasterWatch:
             ('lookupNode', rospy.get_name())])
         self._misses = 0
         if service is None:
-            # The name alone proves nothing: a new master knows it after any call that mentions this
+            # The name alone proves nothing: a new master has it after any call that mentions this
             # node. But the service that every rospy node has is registered with the rest.
             uri = None if uri == own else uri
         if uri is not None and uri != own:
@@ -98,7 +98,7 @@ class MasterWatch:
                           rospy.get_name())
             return
         if is_ending():
-            # This node itself has taken back what the master no longer knows.
+            # This node itself has unregistered it.
             return
         if uri is None:
             if not self.lost:
@@ -119,9 +119,9 @@ class MasterWatch:
         rospy.logwarn('ROS master lost: %s', reason)
 
     def _register(self):
-        """Give the master everything that rospy has ever registered.
+        """Repeat all of rospy's registrations at the master.
 
-        :raises MasterError: it went away again meanwhile
+        :raises MasterError: the master was lost again meanwhile
         """
         own = rospy.get_node_uri()
         publications, services, subscriptions = registrations()
@@ -131,4 +131,4 @@ class MasterWatch:
         calls += [('registerSubscriber', name, kind, own) for name, kind in subscriptions]
         answers = self._api.call_many(calls)
         for (name, _), uris in zip(subscriptions, answers[len(calls) - len(subscriptions):]):
-            meet_publishers(name, uris or [])
+            connect_publishers(name, uris or [])

@@ -5,16 +5,16 @@ import threading
 
 import rospy
 
-from mhri.graph.ros.in_force import InForce
+from mhri.graph.ros.service_owner import ServiceOwner
 from mhri.graph.ros.worker import Worker
 
 
 def call(service, kind, *words, wait_s=0.0, log=rospy.logwarn):
     """Call a service once, over its own connection (blocking).
 
-    :param wait_s: how long to wait for a service that is not there yet [s]
-    :param log: takes (format, service, error) where there is no answer
-    :returns: its answer, None for none
+    :param wait_s: how long to wait for the service to appear [s]
+    :param log: called with (format, service, error) if the call fails
+    :returns: the response, None if the call failed
     """
     try:
         if wait_s:
@@ -26,20 +26,20 @@ def call(service, kind, *words, wait_s=0.0, log=rospy.logwarn):
 
 
 class NodeClient:
-    """The client of one node; a thread of its own does what may block.
+    """The client of one node; blocking calls run on its own thread.
 
     :param label: the name of that thread
-    :param owner: a service of the node: only messages of the node that serves it are accepted; '':
-        those of any node
+    :param owner: a service of the node: only messages of the node that serves it are accepted; ''
+        accepts those of any node
     :param wait_s: how long a call waits for its service [s]
-    :param refuse: called with (caller, topic) of a message that is not accepted
+    :param refuse: called with (caller, topic) of a rejected message
     :param on_new: called with the caller id when another process serves ``owner``
     """
 
     def __init__(self, label, owner='', wait_s=1.0, refuse=lambda caller, topic: None,
                  on_new=lambda caller: None):
         self._wait_s = wait_s
-        self._force = InForce(owner, refuse, on_new) if owner else None
+        self._owner = ServiceOwner(owner, refuse, on_new) if owner else None
         self._lock = threading.Lock()
         self._topics = []
         self._forgotten = False
@@ -47,25 +47,25 @@ class NodeClient:
 
     @property
     def caller(self):
-        """Caller id of the accepted node; '' while it is unknown, or without an owner."""
-        return self._force.caller if self._force else ''
+        """Caller id of the accepted node; '' if unknown, or without an owner."""
+        return self._owner.caller if self._owner else ''
 
     def do(self, job, *words):
         """Run a job on the thread; return at once."""
         self._worker.do(job, *words)
 
     def subscribe(self, topic, kind, callback, queue_size=1):
-        """Return a new subscriber (blocking: it asks the master)."""
-        subscribe = self._force.subscribe if self._force else rospy.Subscriber
+        """Return a new subscriber (blocking: calls the master)."""
+        subscribe = self._owner.subscribe if self._owner else rospy.Subscriber
         return self._keep(subscribe(topic, kind, callback, queue_size=queue_size,
                                     tcp_nodelay=True))
 
     def advertise(self, topic, kind, queue_size):
-        """Return a new publisher (blocking: it asks the master)."""
+        """Return a new publisher (blocking: calls the master)."""
         return self._keep(rospy.Publisher(topic, kind, queue_size=queue_size))
 
     def _keep(self, topic):
-        """Keep a topic to unregister it later; at once, if the client was closed meanwhile."""
+        """Store a topic to unregister later; unregister it now if the client is closed."""
         with self._lock:
             self._topics.append(topic)
             forgotten = self._forgotten
@@ -74,29 +74,29 @@ class NodeClient:
         return topic
 
     def start(self):
-        """Find out which node serves ``owner``; call it after subscribing. Return at once."""
-        self._force.start()
+        """Start looking up the server of ``owner``; call it after subscribing. Return at once."""
+        self._owner.start()
 
     def request(self, on_answer, service, kind, *words):
         """Call a service; return at once.
 
-        :param on_answer: called on the thread with the answer, None where there is none
+        :param on_answer: called on the thread with the response, None if the call failed
         """
         self._worker.do(lambda: on_answer(call(service, kind, *words, wait_s=self._wait_s)))
 
     def close(self, forget=False):
-        """End; return at once.
+        """Close the client; return at once.
 
-        :param forget: unregister every topic as well, in the background: the program lives on
+        :param forget: also unregister every topic, in the background: the program lives on
         """
         self._worker.stop()
-        if self._force:
-            self._force.stop()
+        if self._owner:
+            self._owner.stop()
         if forget and not rospy.is_shutdown():
             threading.Thread(target=self.unregister, name='forget', daemon=True).start()
 
     def unregister(self):
-        """Unregister every topic (blocking: it asks the master)."""
+        """Unregister every topic (blocking: calls the master)."""
         with self._lock:
             self._forgotten = True
             topics, self._topics = self._topics, []

@@ -1,10 +1,12 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Counts the impossible things that a topic says, and logs them at most once a second."""
+"""Counts impossible values on a topic, and logs them at most once a second."""
 import threading
 
 import genpy
 import rospy
+
+from mhri.graph.ros.rospy_inside import keep_link
 
 LOG_EVERY_S = 1.0
 
@@ -13,7 +15,7 @@ class Refusals:
     """The refusals of one topic, from any thread.
 
     :param topic: its full name, for the log
-    :param clock: seconds, monotonic
+    :param clock: function that returns monotonic seconds
     """
 
     def __init__(self, topic, clock):
@@ -31,22 +33,24 @@ class Refusals:
     def read(self, message, message_class):
         """Return a message as one of its class, None if its bytes are not valid.
 
-        :param message: of the class, or ``rospy.AnyMsg``, which comes if another subscriber of the
-            topic in this program asked for bytes
+        :param message: of the class, or ``rospy.AnyMsg``, if another subscriber of the topic in
+            this program subscribed bytes
         """
         if not isinstance(message, rospy.AnyMsg):
             return message
         try:
-            return message_class().deserialize(message._buff)
+            found = message_class().deserialize(message._buff)
+            keep_link(found, message)
+            return found
         except (genpy.DeserializationError, UnicodeDecodeError) as error:
             self.note('a {} of these bytes ({})'.format(message_class._type, error))
             return None
 
     def note(self, problem, verdict='is impossible'):
-        """Count a message, and log what is wrong with it unless just logged.
+        """Count a message, and log its problem unless just logged.
 
         :param problem: the impossible part in words, e.g. 'angular velocity of 1e+30 rad/s'
-        :param verdict: what is wrong with it
+        :param verdict: the predicate of the log line
         """
         now = self._clock()
         with self._lock:

@@ -25,7 +25,7 @@ def package_path():
     return _found(tuple(rospkg.get_ros_paths()))
 
 
-# Each search reads every package.xml there is.
+# Each search reads every package.xml.
 @functools.lru_cache(maxsize=None)
 def _found(ros_paths):
     return rospkg.RosPack(list(ros_paths)).get_path('mhri')
@@ -42,7 +42,7 @@ def resource_path(*parts):
 def read_text(path):
     """Return the UTF-8 text of a configuration file.
 
-    :raises OSError: it cannot be read
+    :raises OSError: the file cannot be read
     :raises ConfigError: it is not UTF-8, or too large, or a pipe or device, which might never end
     """
     mode = os.stat(path).st_mode
@@ -61,16 +61,33 @@ def read_text(path):
 def read_resource(*parts):
     """Return the text of a file below ``resource/``.
 
-    :raises OSError: it cannot be read
+    :raises OSError: the file cannot be read
     """
     return read_text(resource_path(*parts))
 
 
-def robot_types():
-    """Load every template in ``resource/robots``, and those that other packages export.
+def read_all(*folders):
+    """Read the ``*.yaml`` files of folders, sorted by name in each.
 
-    A package exports one in its package.xml, as it does an rqt plugin (``window``, the class of its
-    window, is optional)::
+    :returns: ([(path, text)], [ConfigError] of the unreadable files)
+    """
+    files, errors = [], []
+    for path in (path for folder in folders
+                 for path in sorted(glob.glob(os.path.join(folder, '*.yaml')))):
+        try:
+            files.append((path, read_text(path)))
+        except OSError as error:
+            errors.append(ConfigError(path, '', 'cannot be read: {}'.format(error.strerror)))
+        except ConfigError as error:
+            errors.append(error)
+    return files, errors
+
+
+def robot_types():
+    """Load every template in ``resource/robots``, and those exported by other packages.
+
+    A package exports a template in its package.xml, like an rqt plugin (``window``, the class of
+    its window, is optional)::
 
         <export>
           <mhri robot_type="${prefix}/resource/crawler.yaml" window="crawler_robot.window.Crawler"/>
@@ -78,14 +95,7 @@ def robot_types():
 
     :returns: ({name: RobotType}, [ConfigError])
     """
-    files, unread = [], []
-    for path in sorted(glob.glob(resource_path('robots', '*.yaml'))):
-        try:
-            files.append((path, read_text(path)))
-        except OSError as error:
-            unread.append(ConfigError(path, '', 'cannot be read: {}'.format(error.strerror)))
-        except ConfigError as error:
-            unread.append(error)
+    files, unread = read_all(resource_path('robots'))
     exports, broken = exported_types()
     types, errors = load_robot_types(files, exports)
     return types, unread + errors + broken
@@ -111,7 +121,7 @@ def exported_types(rospack=None):
 def exported_tasks(rospack=None):
     """Return the modules of tasks that packages export.
 
-    A package exports one in its package.xml; the module has the task's row as ``ROW``::
+    A package exports a task in its package.xml; the module has the task's row as ``ROW``::
 
         <export>
           <mhri task="lab_tasks.look_around"/>
@@ -134,7 +144,7 @@ def exported_tasks(rospack=None):
 
 
 def _elements(rospack, errors):
-    """Yield (package, manifest, attributes) of everything that packages export for mhri."""
+    """Yield (package, manifest, attributes) of each export for mhri."""
     rospack = rospack or rospkg.RosPack()
     for package in sorted(rospack.list()):
         manifest = os.path.join(rospack.get_path(package), 'package.xml')
@@ -149,7 +159,7 @@ def _exports_of(package, manifest, errors):
             if b'<' + EXPORT_TAG.encode('ascii') not in stream.read():
                 return []
     except OSError:
-        # A rosbuild package without a package.xml, or one that vanished meanwhile.
+        # A rosbuild package without a package.xml, or a package deleted meanwhile.
         return []
     # Slow to import: most computers have no such package.
     from catkin_pkg.package import InvalidPackage, parse_package
@@ -157,7 +167,7 @@ def _exports_of(package, manifest, errors):
         return [export.attributes for export in parse_package(manifest, warnings=[]).exports
                 if export.tagname == EXPORT_TAG]
     except OSError:
-        return []  # it vanished meanwhile
+        return []  # deleted meanwhile
     except InvalidPackage as error:
         errors.append(Export(package, manifest, '').error('', 'cannot be understood: {}'.format(
             ' '.join(str(error).split()))))
@@ -186,19 +196,3 @@ def _read_export(package, manifest, attributes):
                            'has to install it, too'.format(error.strerror, manifest))
     except ConfigError as error:
         raise export.error('', error.problem)
-
-
-def profile_reader(beside):
-    """Return a function from the name of a pad profile to (origin, text).
-
-    A name means ``resource/pads/<name>.yaml``; anything with a slash or ``.yaml`` is a path,
-    relative to the folder of the file that names it.
-
-    :param beside: the path of the file that contains the names
-    """
-    def read(name):
-        path = resource_path('pads', name + '.yaml')
-        if os.sep in name or name.endswith('.yaml'):
-            path = os.path.join(os.path.dirname(os.path.abspath(beside)), name)
-        return path, read_text(path)
-    return read

@@ -1,13 +1,14 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""All that reaches beneath rospy's public interface, in one place, tested at import.
+"""All uses of rospy's internals, in one place, checked at import.
 
-Nobody develops rospy any further (ros_comm was archived in 2025), but a distribution may patch it:
-this module looks at import for all it relies on, and an :class:`ImportError` says what is missing.
-How messages go in and out on the driving path is in :mod:`mhri.graph.ros.prompt`.
+rospy is no longer developed (ros_comm was archived in 2025), but a distribution may patch it: this
+module checks at import for all internals it uses, and raises an :class:`ImportError` that names the
+missing ones. The transport of messages on the driving path is in
+:mod:`mhri.graph.ros.non_blocking`.
 
 :func:`caller_of`, :func:`listeners`, :func:`on_publisher_gone`, :func:`publisher_processes` and
-:func:`publisher_uri` tell who is at the other end of a connection, and when it is gone.
+:func:`publisher_uri` identify the node at the other end of a connection, and report its loss.
 """
 import rospy
 from rospy.impl.masterslave import ROSHandler
@@ -18,23 +19,33 @@ from rospy.impl.tcpros_base import TCPROSTransport
 
 
 def caller_of(message):
-    """Return the caller id of whoever sent a message, '' if unknown."""
+    """Return the caller id of the sender of a message, '' if unknown."""
     return (message._connection_header or {}).get('callerid', '')
 
 
 def type_of(message):
-    """Return the ROS type of a message as its publisher named it."""
+    """Return the ROS type of a message as declared by its publisher."""
     return message._connection_header['type']
 
 
+def field_type(message, field):
+    """Return the ROS type of a field of a message, such as ``float64[]``."""
+    return message._slot_types[message.__slots__.index(field)]
+
+
 def md5sum_of(message):
-    """Return the md5sum of a message's definition as its publisher named it, '' if unknown."""
+    """Return the MD5 sum of a message's definition as declared by its publisher, '' if unknown."""
     return message._connection_header.get('md5sum', '')
 
 
 def link_of(message):
-    """Return an object that is the same for all messages of one connection."""
-    return message._connection_header
+    """Return an object that is the same for all messages of one connection, None if unknown."""
+    return getattr(message, '_connection_header', None)
+
+
+def keep_link(message, source):
+    """Give a message the connection of another one from whose bytes it was made."""
+    message._connection_header = link_of(source)
 
 
 def listeners(connections):
@@ -43,7 +54,7 @@ def listeners(connections):
 
 
 def peer_hosts(connections):
-    """Return {caller id: network address} of who is at the other end of connections."""
+    """Return {caller id: network address} of the nodes at the other end of connections."""
     found = {}
     for connection in connections:
         try:
@@ -55,42 +66,40 @@ def peer_hosts(connections):
     return found
 
 
+def _links(subscriber):
+    """Return the open connections of a ``rospy.Subscriber``."""
+    impl = subscriber.impl
+    return impl.connections if impl else ()
+
+
 def publisher_hosts(subscriber):
     """Return {caller id: network address} of the publishers connected to a ``rospy.Subscriber``."""
-    impl = subscriber.impl
-    return peer_hosts(impl.connections if impl else ())
+    return peer_hosts(_links(subscriber))
 
 
 def publishers(subscriber):
-    """Return the caller ids of the publishers that are connected to a ``rospy.Subscriber``."""
-    impl = subscriber.impl
-    return {link.callerid_pub for link in (impl.connections if impl else ())}
+    """Return the caller ids of the publishers connected to a ``rospy.Subscriber``."""
+    return {link.callerid_pub for link in _links(subscriber)}
 
 
-def publisher_uri(subscriber, caller=None):
-    """Return the XML-RPC address of a node that publishes the subscribed topic, or None.
-
-    :param caller: the caller id of that node; default: any
-    """
-    return next((uri for name, uri in publisher_processes(subscriber)
-                 if uri and caller in (None, name)), None)
+def publisher_uri(subscriber):
+    """Return the XML-RPC address of a node that publishes the subscribed topic, or None."""
+    return next((uri for _, uri in publisher_processes(subscriber) if uri), None)
 
 
 def publisher_processes(subscriber):
-    """Return (caller id, XML-RPC address) of each publisher that is connected, as a list."""
-    impl = subscriber.impl
-    return [(link.callerid_pub, link.endpoint_id) for link in (impl.connections if impl else ())]
+    """Return (caller id, XML-RPC address) of each connected publisher, as a list."""
+    return [(link.callerid_pub, link.endpoint_id) for link in _links(subscriber)]
 
 
 def sender_uri(subscriber, message):
-    """Return the XML-RPC address of whoever sent a message to a subscriber, '' if unknown."""
-    impl = subscriber.impl
-    return next((link.endpoint_id for link in (impl.connections if impl else ())
+    """Return the XML-RPC address of the sender of a subscriber's message, '' if unknown."""
+    return next((link.endpoint_id for link in _links(subscriber)
                  if link.header is link_of(message)), None) or ''
 
 
 def latches(message):
-    """Tell whether the publisher of a message keeps its last one for whoever connects later."""
+    """Return whether the publisher of a message latches its last one."""
     return str((message._connection_header or {}).get('latching', '0')) == '1'
 
 
@@ -107,7 +116,7 @@ def on_publisher_gone(subscriber, call):
     plain = impl.remove_connection
 
     def remove_connection(connection):
-        """Let rospy forget the connection, then tell."""
+        """Let rospy remove the connection, then call the function."""
         plain(connection)
         who = connection.callerid_pub, connection.endpoint_id
         if who not in publisher_processes(subscriber):
@@ -121,7 +130,7 @@ _has_connection = rospy.topics._SubscriberImpl.has_connection
 
 
 def _connected(impl, endpoint_id):
-    """Tell whether a subscription has a connection, or is to have none, to a publisher."""
+    """Return whether a subscription has a connection to a publisher, or must not have one."""
     return (impl.resolved_name in _OTHERS_ONLY and endpoint_id == rospy.get_node_uri()
             or _has_connection(impl, endpoint_id))
 
@@ -130,9 +139,9 @@ rospy.topics._SubscriberImpl.has_connection = _connected
 
 
 def others_only(topic):
-    """Let subscribers of a topic never connect to this node itself, which publishes it, too.
+    """Keep subscribers of a topic from connecting to this node, which publishes it, too.
 
-    Every message would come back, and be read on a thread of its own. Call it before subscribing.
+    Every message would come back, and be read on another thread. Call it before subscribing.
 
     :param topic: its absolute name
     """
@@ -140,12 +149,12 @@ def others_only(topic):
 
 
 def is_initialised():
-    """Tell whether somebody in this process has called ``rospy.init_node``."""
+    """Return whether ``rospy.init_node`` was called in this process."""
     return rospy.core.is_initialized()
 
 
 def ended_by_hand():
-    """Return a function that tells whether somebody ended this node by ``rosnode kill``.
+    """Return a function that returns whether this node was ended by ``rosnode kill``.
 
     The master, which ends the older of two nodes with one name, does not count. Call it after
     ``init_node``.
@@ -156,9 +165,9 @@ def ended_by_hand():
 
 
 def unsubscribe(subscriber):
-    """Unregister a ``rospy.Subscriber`` (blocking: it asks the master).
+    """Unregister a ``rospy.Subscriber`` (blocking: calls the master).
 
-    rospy leaves the epoll handle of the topic open until the garbage collector comes to its oldest
+    rospy leaves the epoll handle of the topic open until the garbage collector collects its oldest
     generation (ros_comm issue 2373), hundreds of them as an operator toggles views: this closes it.
     """
     impl = subscriber.impl
@@ -168,17 +177,17 @@ def unsubscribe(subscriber):
 
 
 def never_ask_for(name, value):
-    """Tell rospy the value of a parameter, so that it never asks the master for it."""
+    """Set rospy's cached value of a parameter, so that it never reads it from the master."""
     get_param_server_cache().set(name, value)
 
 
 def skip_number(publisher):
-    """Count a message of a ``rospy.Publisher`` that is not sent, as if it were lost on the way."""
+    """Skip a sequence number of a ``rospy.Publisher``, as if a message was lost in transit."""
     publisher.impl.seq += 1
 
 
 def answer_late(wait):
-    """Call a function before this process answers who asks for its id, as the link probe does."""
+    """Call a function before this process answers a request for its id, as by the link probe."""
     plain = ROSHandler.getPid
 
     def get_pid(handler, caller_id):
@@ -188,8 +197,26 @@ def answer_late(wait):
     ROSHandler.getPid = get_pid
 
 
+def end_by_own_name():
+    """Accept a shutdown by the master only if it names this node.
+
+    The master sends a shutdown to the old address of a crashed node when another one takes its
+    name: the process that has that port by then would end. Every rospy node that has logged
+    anything stays registered this way, by its subscription to a parameter.
+    """
+    plain = ROSHandler.shutdown
+
+    def shutdown(handler, caller_id, msg=''):
+        if caller_id == '/master' and msg.startswith('[/') and not msg.startswith(
+                '[{}]'.format(rospy.get_name())):
+            return 1, 'another node had this address', 0
+        return plain(handler, caller_id, msg)
+
+    ROSHandler.shutdown = shutdown
+
+
 def is_ending():
-    """Tell whether this node ends: its registrations go before ``is_shutdown`` says so."""
+    """Return whether this node is ending: it unregisters before ``is_shutdown`` is true."""
     return rospy.core.is_shutdown_requested()
 
 
@@ -203,7 +230,7 @@ def registrations():
             topics.get_subscriptions())
 
 
-def meet_publishers(topic, uris):
+def connect_publishers(topic, uris):
     """Connect this node's subscription to publishers, as if the master had reported them."""
     manager = next(iter(get_registration_listeners().listeners), None)
     if manager is not None:
@@ -211,11 +238,11 @@ def meet_publishers(topic, uris):
 
 
 def require(methods, names):
-    """Check for what a module relies on.
+    """Check for the internals that a module uses.
 
     :param methods: [(class or module, names of its functions)]
     :param names: [(function, names that it uses)]
-    :raises ImportError: rospy is not the version this was written for
+    :raises ImportError: rospy differs from the version this was written for
     """
     missing = ['{}.{}'.format(owner.__name__, name) for owner, wanted in methods for name in wanted
                if not callable(getattr(owner, name, None))]
@@ -226,7 +253,7 @@ def require(methods, names):
                           'or 1.16'.format(', '.join(missing)))
 
 
-require([(ROSHandler, ('getPid',)),
+require([(ROSHandler, ('getPid', 'shutdown')),
          (rospy.topics._SubscriberImpl, ('has_connection', 'remove_connection')),
          (rospy.core, ('add_preshutdown_hook', 'is_initialized',
                        'is_shutdown_requested'))],

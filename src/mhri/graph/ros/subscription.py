@@ -1,31 +1,31 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A subscription to raw bytes that you can open and close any number of times.
+"""A subscription to raw bytes that can be opened and closed any number of times.
 
-rospy's own leaves things behind when unregistered (ros_comm issues 544, 1998, 2373; the project is
-archived, so they will stay): the epoll handle of each topic, which sits in a reference cycle and so
-stays open until the garbage collector comes to its oldest generation; and, if a publisher's machine
-does not answer, a thread that asks it for a connection for ever.
+rospy's own leaks resources when unregistered (ros_comm issues 544, 1998, 2373; the project is
+archived, so they will stay): the epoll handle of each topic, which is in a reference cycle and so
+stays open until the garbage collector collects its oldest generation; and, if a publisher's machine
+does not answer, a thread that requests a connection for ever.
 """
 import io
 
 import rospy
 
-from mhri.graph.ros.knock import knock
+from mhri.graph.ros.parallel_calls import connectable
 from mhri.graph.ros.master_api import MasterApi
 from mhri.graph.ros.rospy_inside import type_of, unsubscribe
 
-# The most to read from the socket at once [bytes]; the rest follows the next time. From 64 kB to 16
+# Maximum size of one read from the socket [bytes]; the rest follows the next time. From 64 kB to 16
 # MB the CPU time per picture was measured to be the same.
 BUFF_SIZE = 1 << 20
 
 
 class Subscription:
-    """The messages of one topic as bytes, of whatever type.
+    """The messages of one topic as bytes, of any type.
 
     rospy has one connection for all subscribers of a topic in a program, with the class of the
-    first and the queue size of the last. So this asks for no queue size, lest a recorder of the
-    same topic miss something: the callback only stores, and no queue can build up.
+    first and the queue size of the last. So this sets no queue size, lest a recorder of the same
+    topic miss messages: the callback only stores, so no queue can build up.
 
     :param on_bytes: called with (type, bytes-like) on rospy's thread; it must return at once
     """
@@ -33,10 +33,10 @@ class Subscription:
     def __init__(self, topic, on_bytes):
         self.topic = topic
         self._on_bytes = on_bytes
-        self._subscriber = rospy.Subscriber(topic, rospy.AnyMsg, self._hear, buff_size=BUFF_SIZE,
-                                            tcp_nodelay=True)
+        self._subscriber = rospy.Subscriber(topic, rospy.AnyMsg, self._on_message,
+                                            buff_size=BUFF_SIZE, tcp_nodelay=True)
 
-    def _hear(self, message):
+    def _on_message(self, message):
         message_type = type_of(message)
         if isinstance(message, rospy.AnyMsg):
             self._on_bytes(message_type, message._buff)
@@ -46,24 +46,20 @@ class Subscription:
             self._on_bytes(message_type, buffer.getbuffer())
 
     def connections(self):
-        """Return the number of publishers connected."""
+        """Return the number of connected publishers."""
         return self._subscriber.get_num_connections()
 
     def close(self):
-        """Stop listening and leave nothing behind (blocking: it asks the master)."""
+        """Unsubscribe without leaking resources (blocking: calls the master)."""
         unsubscribe(self._subscriber)
 
 
 def reachable(caller_id, topic, timeout_s=1.0):
-    """Tell whether any publisher of a topic answers (blocking for at most 3 s).
+    """Return whether any publisher of a topic answers (blocking for at most 3 s).
 
     rospy's thread for a publisher that does not answer lives as long as the program: so subscribe
-    only to what is reachable.
+    only reachable topics.
 
     :raises MasterError: the master cannot be reached
     """
-    api = MasterApi(caller_id, timeout_s)
-    publishers = dict((name, nodes) for name, nodes in api.call('getSystemState')[0])
-    nodes = publishers.get(topic, [])
-    uris = api.call_many([('lookupNode', node) for node in nodes]) if nodes else []
-    return bool(knock([uri for uri in uris if uri]))
+    return bool(connectable(MasterApi(caller_id, timeout_s).publisher_uris(topic)))

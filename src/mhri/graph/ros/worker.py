@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A thread for calls that may block, so that no other thread must."""
+"""A thread for calls that may block, so that no other thread blocks."""
 import logging
 import queue
 import threading
@@ -31,7 +31,7 @@ class Worker:
         self._jobs.put((job, args))
 
     def stop(self):
-        """Take no more jobs; return at once; a job under way ends in its own time."""
+        """Accept no more jobs; return at once; a running job ends in its own time."""
         self._done.set()
         self._jobs.put((lambda: None, ()))
 
@@ -43,5 +43,5 @@ class Worker:
                 job, args = self._idle, ()
             try:
                 job(*args)
-            except Exception:  # the guard of this thread: one line in the log, then go on
+            except Exception:  # keep this thread alive: log the error and continue
                 _LOG.exception('a background job failed: %r', job)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What carries the link: zenoh (the library ``eclipse-zenoh``), used in this file alone."""
+"""The transport of the link: zenoh (the library ``eclipse-zenoh``), used only in this file."""
 import importlib
 import json
 import os
@@ -11,35 +11,37 @@ import threading
 import rospkg
 
 from mhri.link.carried import COMMAND, key_of, PICTURE
-from mhri.link.keys import ALONE, LITTLE, says_all, TLS
+from mhri.link.keys import LITTLE, protocol_of, says_all
 from mhri.link.records import RECORD
 from mhri.link.ros.datagrams import open_port
 from mhri.link.sealed import OFFER
 from mhri.robots.owners import called
 
-# utils/host/common.sh installs it.
+# Installed by utils/host/common.sh.
 VERSION = '1.5.1'
-ENDPOINT = re.compile(r'(tcp|udp|tls|quic)/(\[[0-9a-fA-F:.]+\]|[A-Za-z0-9.-]+):[0-9]{1,5}\Z')
-# A peer that says nothing for so long is gone; knocks at one that is not there yet [ms].
-_LEASE_MS, _KNOCK_MS, _KNOCK_MOST_MS, _OPEN_MS = 1500, 200, 1000, 1000
-# Beside datagrams TLS has the time for repeating what a bad radio loses: their keys need it.
+ENDPOINT = re.compile(r'(tcp|tls|udp|quic)/(\[[0-9a-fA-F:.]+\]|[A-Za-z0-9.-]+):[0-9]{1,5}\Z')
+# Protocols of earlier versions, which carry nothing any more.
+GONE = ('udp', 'quic')
+# Lease of a silent peer; period of the attempts to connect; time to open a connection [ms].
+_LEASE_MS, _RETRY_MS, _MAX_RETRY_MS, _OPEN_MS = 1500, 200, 1000, 1000
+# With datagrams TLS only has to carry their keys, so it may take longer to retransmit [ms].
 _LONG_LEASE_MS, _LONG_OPEN_MS = 5000, 4000
-# What is larger is no message, to a robot, and from one or through a router [bytes].
+# Maximum size of a message to a robot, and from one or through a router [bytes].
 MAX_TO_ROBOT, MAX_FROM_ROBOT = 1 << 23, 1 << 25
 
 
 class LibraryMissing(Exception):
-    """The library is not installed, or cannot be loaded; says the remedy."""
+    """The library is missing, or cannot be loaded; the text names the remedy."""
 
 
 class CarrierError(Exception):
-    """An endpoint that cannot be used; says which."""
+    """An unusable endpoint, named in the text."""
 
 
 def load_library():
-    """Return the module ``zenoh``, from the place of mhri's own or from the system.
+    """Return the module ``zenoh``, from mhri's workspace or from the system.
 
-    :raises LibraryMissing: it is in neither
+    :raises LibraryMissing: it is missing in both, or cannot be loaded
     """
     package = rospkg.RosPack().get_path('mhri')
     # The checkout's workspace, as devel space and as install space.
@@ -56,36 +58,40 @@ def load_library():
 
 
 def check_endpoints(name, endpoints, secret=False):
-    """Refuse what is no list of endpoints.
+    """Reject invalid endpoints.
 
-    :param secret: keys are in use
-    :raises CarrierError: names the option and the remedy
+    :param secret: whether keys are in use
+    :raises CarrierError: an endpoint is invalid; the text names the option and the remedy
     """
     for endpoint in endpoints:
         if not ENDPOINT.match(endpoint) or int(endpoint.rpartition(':')[2]) > 65535:
-            raise CarrierError('--{}: {:.60} is no endpoint: give one such as '
-                               'tcp/192.168.0.7:7447 or udp/192.168.0.7:7447'.format(
-                                   name, repr(endpoint)))
-        protocol = endpoint.partition('/')[0]
-        if protocol not in (TLS if secret else ALONE):
+            raise CarrierError('--{}: {:.60} is not an endpoint: give one such as '
+                               'tls/192.168.0.7:7447'.format(name, repr(endpoint)))
+        protocol, _, address = endpoint.partition('/')
+        if protocol in GONE:
+            raise CarrierError(
+                '--{}: {}: {}/ is no longer a way to connect: give tls/{} with keys, which drives '
+                'on a bad radio, or tcp/{} with --keys off on a network that you trust'.format(
+                    name, endpoint, protocol, address, address))
+        if protocol != protocol_of(secret):
             raise CarrierError('--{}: {} {}'.format(name, endpoint, (
-                'asks nobody for a key: with keys give tls/ or quic/ in place of {}/, or '
-                '--keys off'.format(protocol) if secret else
+                'does not check keys: with keys give tls/{}, or --keys off'.format(address)
+                if secret else
                 'needs keys: put one in place with mhri_keys.sh, or give --keys FOLDER')))
 
 
 class Carrier:
-    """A zenoh session of one robot's link; it finds the other side by itself, again and again.
+    """A zenoh session of one robot's link, which reconnects by itself.
 
-    Everything is sent at once or dropped, never kept: commands before states before pictures.
+    Messages are sent at once or dropped, never queued: commands before states before pictures.
 
-    :param listen: endpoints on which the other side may call, e.g. ``['tcp/0.0.0.0:7447']``
-    :param connect: endpoints to call
+    :param listen: endpoints to listen on, e.g. ``['tcp/0.0.0.0:7447']``
+    :param connect: endpoints to connect to
     :param secrets: settings of zenoh for keys, see :meth:`mhri.link.ros.key_folder.KeyFolder.read`;
-        None for a link without
-    :param place: ``peer``; ``routed`` if what is called is a zenoh router; or ``router`` itself
-    :param own: the name in the own key: between peers that have one sealed datagrams go, too
-    :param max_bytes: of a message that comes: who sends a larger one is hung up on
+        None for a link without keys
+    :param place: ``peer``; ``routed`` if it connects to a zenoh router; or ``router``
+    :param own: the name in the own key: peers with keys also use sealed datagrams
+    :param max_bytes: maximum size of a received message: larger ones close the connection
     :raises LibraryMissing: see :func:`load_library`
     :raises CarrierError: an endpoint cannot be listened on
     """
@@ -99,7 +105,7 @@ class Carrier:
         self._listen, self._connect, self._place = list(listen), list(connect), place
         self._lock = threading.Lock()
         self._session = None
-        # What to declare anew: {key: its publisher and its class}, [(keys, function, subscriber)].
+        # Declared in every session: {key: publisher and class}, [(keys, function, subscriber)].
         self._publishers = {}
         self._kept = []
         self._own = own
@@ -111,17 +117,17 @@ class Carrier:
             'mode': 'router' if self._place == 'router' else 'peer',
             'listen/endpoints': self._listen, 'connect/endpoints': self._connect,
             'connect/timeout_ms': -1, 'connect/exit_on_failure': False,
-            'connect/retry': {'period_init_ms': _KNOCK_MS, 'period_max_ms': _KNOCK_MOST_MS,
+            'connect/retry': {'period_init_ms': _RETRY_MS, 'period_max_ms': _MAX_RETRY_MS,
                               'period_increase_factor': 1.5},
-            # A router passes nothing on between peers of which it hears no gossip. Whom the others
-            # gossip about is never called.
+            # A router only forwards between peers discovered by gossip; no direct connections are
+            # made to them.
             'scouting/multicast/enabled': False,
             'scouting/gossip/enabled': self._place != 'peer',
             'scouting/gossip/autoconnect': {'router': [], 'peer': []},
             'transport/unicast/open_timeout': _LONG_OPEN_MS if self._datagrams else _OPEN_MS,
             'transport/link/tx/lease': _LONG_LEASE_MS if self._datagrams else _LEASE_MS,
             'transport/link/rx/max_message_size': self._max_bytes,
-            'transport/link/protocols': list(ALONE if secrets is None else TLS)}
+            'transport/link/protocols': [protocol_of(secrets is not None)]}
         settings.update(secrets or {})
         config = self._zenoh.Config()
         for key, value in settings.items():
@@ -135,19 +141,19 @@ class Carrier:
             self._session = session
             for key, (_, urgency) in list(self._publishers.items()):
                 self._publishers[key] = self._publisher(key, urgency), urgency
-            self._kept = [(keys, hear, session.declare_subscriber(keys, hear))
-                          for keys, hear, _ in self._kept]
+            self._kept = [(keys, handler, session.declare_subscriber(keys, handler))
+                          for keys, handler, _ in self._kept]
 
     def renew(self, secrets):
-        """Hang up, and call again with other keys; what is sent meanwhile is dropped.
+        """Reconnect with other keys; messages sent meanwhile are dropped.
 
-        :raises CarrierError: the endpoint cannot be listened on yet; try again
+        :raises CarrierError: the endpoint cannot be listened on yet; retry later
         """
         self.hang_up()
         self._open(secrets)
 
     def hang_up(self):
-        """Hear and reach nobody any more, until :meth:`renew`."""
+        """Close all connections until :meth:`renew`."""
         with self._lock:
             session, self._session = self._session, None
             self._publishers = {key: (None, urgency)
@@ -158,9 +164,9 @@ class Carrier:
             session.close()
 
     def agree_again(self, owners):
-        """Let those with these names in their certificates show by TLS once more who they are.
+        """Require the owners of these certificates to authenticate by TLS again.
 
-        Until they have, no datagram of theirs counts.
+        Until then their datagrams are refused.
         """
         if self._datagrams is not None:
             self._datagrams.forget(owners)
@@ -190,17 +196,17 @@ class Carrier:
         return send
 
     def listen(self, keys, on_bytes):
-        """Call a function with (key, bytes) of all that comes, on zenoh's thread."""
-        def hear(sample):
+        """Register a callback of (key, bytes) for received messages, on zenoh's thread."""
+        def handler(sample):
             """Pass a message on."""
             on_bytes(str(sample.key_expr), sample.payload.to_bytes())
         with self._lock:
-            # zenoh forgets what nobody holds.
-            self._kept.append((keys, hear, self._session and
-                               self._session.declare_subscriber(keys, hear)))
+            # zenoh drops subscribers without references.
+            self._kept.append((keys, handler, self._session and
+                               self._session.declare_subscriber(keys, handler)))
 
     def leave(self, root, way):
-        """Say and hear nothing more below a key, and by a way of datagrams (or None)."""
+        """Stop sending and receiving below a key, and on a path of datagrams (None: without)."""
         with self._lock:
             gone = [row for row in self._kept if row[0].startswith(root)]
             self._kept = [row for row in self._kept if row not in gone]
@@ -214,11 +220,11 @@ class Carrier:
                 one.undeclare()
 
     def between(self, robot, host):
-        """Return what carries the link of a robot with one host."""
+        """Return the transport between a robot and one host."""
         return Between(self, robot, host)
 
     def way(self, *words):
-        """Return a :class:`mhri.link.ros.datagrams.Way`, None where there are no datagrams."""
+        """Return a :class:`mhri.link.ros.datagrams.DatagramPath`, None without datagrams."""
         return self._datagrams and self._datagrams.way(*words)
 
     def fill(self, status):
@@ -228,18 +234,18 @@ class Carrier:
         return status
 
     def lets(self, host, topic):
-        """Tell whether a host may say something to the robot here, as zenoh does for TLS."""
+        """Return whether a host may send a topic to this robot, by the same rules as for TLS."""
         return topic in LITTLE or says_all(self._own, host)
 
     def close(self):
-        """Hang up for good."""
+        """Close the session."""
         if self._datagrams is not None:
             self._datagrams.close()
         self.hang_up()
 
 
 class Between:
-    """The part of a :class:`Carrier` that belongs to one robot and one host."""
+    """The part of a :class:`Carrier` between one robot and one host."""
 
     def __init__(self, carrier, robot, host):
         self._carrier, self._robot, self._host = carrier, robot, host
@@ -250,13 +256,13 @@ class Between:
         send = self._carrier.sender(key_of(self._robot, self._host, way, topic), urgency)
 
         def go(data):
-            """Send by a sealed datagram where those pass."""
-            if self._way is None or not self._way.send(topic, data):
+            """Send a sealed datagram if datagrams pass; else, and for recordings, use TLS."""
+            if self._way is None or urgency == RECORD or not self._way.send(topic, data):
                 send(data)
         return go
 
     def listen(self, way, on_bytes):
-        """Call a function with (topic, bytes) of all that comes on a way, on another thread."""
+        """Register a callback of (topic, bytes) for a direction, called on another thread."""
         root = key_of(self._robot, self._host, way, '')
         back = key_of(self._robot, self._host, 'up' if way == 'down' else 'down', OFFER)
         self._way = self._carrier.way(
@@ -266,14 +272,14 @@ class Between:
         if self._way is not None:
             self._way.listen(on_bytes)
 
-        def hear(key, data):
-            """Take in what came over TLS, or without keys."""
+        def handler(key, data):
+            """Handle a message received by TLS, or without keys."""
             if key[len(root):] != OFFER:
                 on_bytes(key[len(root):], data)
             elif self._way is not None:
                 self._way.on_offer(data)
-        self._carrier.listen(root + '**', hear)
+        self._carrier.listen(root + '**', handler)
 
     def close(self):
-        """Say and hear nothing more."""
+        """Stop sending and receiving."""
         self._carrier.leave(key_of(self._robot, self._host, '', '')[:-1], self._way)

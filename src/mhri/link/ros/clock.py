@@ -5,5 +5,5 @@ import time
 
 
 def boot_clock():
-    """Return the seconds of a clock that goes on while the computer sleeps."""
+    """Return the seconds of a monotonic clock that includes suspend."""
     return time.clock_gettime(time.CLOCK_BOOTTIME)

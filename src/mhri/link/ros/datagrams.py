@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The UDP port of a link with keys, for its sealed datagrams (:mod:`mhri.link.sealed`).
 
-It has the number of the port of TLS, on the end that is called there. Where datagrams do not pass,
-as a firewall lets none through, everything goes over TLS.
+On the listening end it has the same number as the TLS port. If datagrams do not pass, for example
+because of a firewall, all messages use TLS.
 """
 import collections
 import logging
@@ -15,36 +15,36 @@ import threading
 from mhri.link.frames import FrameError
 from mhri.link.keys import is_of
 from mhri.link.ros.clock import boot_clock
-from mhri.link.sealed import Lane, MOST_BYTES, OFFER, REPLAYED, run_of, SealError, STRANGER
+from mhri.link.sealed import SealedChannel, MAX_BYTES, OFFER, REPLAYED, run_of, SealError, STRANGER
 
-# Each end shows so often that datagrams pass, when it has nothing to say [s].
+# Period of the keepalives, which test whether datagrams pass [s].
 SHOW_S = 0.25
-# The keys are told so often over TLS, while datagrams do not pass and while they do [s].
+# Period of the offers over TLS, while datagrams do not pass and while they do [s].
 OFFER_S, REMIND_S = 1.0, 10.0
-# The address that is called is looked up again so often while nothing comes from it [s].
+# Period of address look-ups while nothing is received from the called address [s].
 LOOK_UP_S = 5.0
-# Who is silent for so long is called where it was at first, and less often [s].
+# After this silence the original address of an end is used, and less often [s].
 GONE_S = 10.0
-# One line for each reason in so long [s].
-TOLD_S = 10.0
-PASS = 'pass: what is lost holds up nothing'
-PASS_NOT = 'do not pass: all goes over TLS'
+# Period of the log lines for each reason [s].
+LOG_S = 10.0
+PASS = 'pass: lost packets delay nothing'
+PASS_NOT = 'do not pass: everything goes over TLS'
 _LARGEST = 65536
-# Of a socket: the usual one does not hold the parts of a recording that are asked for at once.
+# Socket buffer: the default is too small for the parts of a recording in one request.
 BUFFER_BYTES = 1 << 20
-# Of one port so many are read before others are served.
+# Number of datagrams to read from one port before serving others.
 _AT_ONCE = 64
-# That of rospy, which need not be there.
+# The logger of rospy, without importing it.
 _LOG = logging.getLogger('rosout')
-# What an honest end may do: it is counted, and no line.
+# Refusals that also occur between legitimate ends: counted, but not logged.
 _QUIET = (REPLAYED, STRANGER)
 
 
 def open_port(listen, connect):
-    """Return :class:`Datagrams` that have begun, None where there can be none.
+    """Return running :class:`Datagrams`, None if the endpoints have no TLS.
 
-    :param listen: endpoints; where they are TLS the UDP port of that number is listened on
-    :param connect: endpoints that are called
+    :param listen: endpoints; the UDP port of each TLS endpoint is listened on
+    :param connect: endpoints to call
     """
     ends = [[address_of(end) for end in row if end.startswith('tls/')] for row in (listen, connect)]
     if not any(ends):
@@ -53,10 +53,10 @@ def open_port(listen, connect):
         from cryptography.exceptions import InvalidTag
         from cryptography.hazmat.primitives.ciphers.aead import AESGCM
     except ImportError as error:
-        _LOG.warning('no sealed datagrams, so all goes over TLS, which does not drive on a bad '
+        _LOG.warning('no sealed datagrams, so everything goes over TLS, too slow to drive on a bad '
                      'radio: install python3-cryptography (%s)', error)
         return None
-    return Datagrams(*ends, lambda: Lane(AESGCM, os.urandom, InvalidTag)).start()
+    return Datagrams(*ends, lambda: SealedChannel(AESGCM, os.urandom, InvalidTag)).start()
 
 
 def address_of(endpoint):
@@ -66,20 +66,20 @@ def address_of(endpoint):
 
 
 class Datagrams:
-    """Sends and takes in the sealed datagrams of one :class:`mhri.link.ros.carrier.Carrier`.
+    """Sends and receives the sealed datagrams of one :class:`mhri.link.ros.carrier.Carrier`.
 
     :param listen: (address, port) to listen on
     :param connect: (address, port) to call
-    :param lane: returns a new :class:`mhri.link.sealed.Lane`
+    :param channel: returns a new :class:`mhri.link.sealed.SealedChannel`
     """
 
-    def __init__(self, listen, connect, lane, clock=boot_clock):
+    def __init__(self, listen, connect, channel, clock=boot_clock):
         self._clock = clock
-        self._lane = lane
+        self._make_channel = channel
         self._ways = []
         self._lock = threading.Lock()
         self.refused = collections.Counter()
-        self._told_at = {}
+        self._logged_at = {}
         self._ended = False
         self._selector = selectors.DefaultSelector()
         for address in listen:
@@ -95,7 +95,7 @@ class Datagrams:
         except OSError as error:
             if bound is not None:
                 bound.close()
-            _LOG.warning('no datagrams on UDP port %d: %s; all goes over TLS, which does not '
+            _LOG.warning('no datagrams on UDP port %d: %s; everything goes over TLS, too slow to '
                          'drive on a bad radio', port, error)
             return
         self._add(bound)
@@ -103,58 +103,58 @@ class Datagrams:
     def _add(self, bound):
         bound.setblocking(False)
         for buffer in (socket.SO_RCVBUF, socket.SO_SNDBUF):
-            # Linux gives what it may.
+            # Linux limits this to its maximum.
             bound.setsockopt(socket.SOL_SOCKET, buffer, BUFFER_BYTES)
         self._selector.register(bound, selectors.EVENT_READ)
 
     def start(self):
-        """Begin; returns at once."""
+        """Start the thread."""
         threading.Thread(target=self._run, name='datagrams', daemon=True).start()
         return self
 
     def way(self, name, ends, offer, topics):
-        """Return the way to one other end.
+        """Return the path to one other end.
 
-        :param name: of it, for the log
-        :param ends: (robot, host) whose link it is
-        :param offer: called with bytes to be told to it over TLS
-        :param topics: called with a topic, tells whether it may say that
+        :param name: name of that end, for the log
+        :param ends: (robot, host) of the link
+        :param offer: called with an offer, sends it over TLS
+        :param topics: called with a topic, returns whether that end may send it
         """
-        found = Way(name, ends, self, self._lane(), offer, topics)
+        found = DatagramPath(name, ends, self, self._make_channel(), offer, topics)
         with self._lock:
             self._ways.append(found)
         return found
 
     def leave(self, way):
-        """Send and take in nothing more by a way."""
+        """Stop sending and receiving on a path."""
         with self._lock:
             self._ways = [other for other in self._ways if other is not way]
 
     def forget(self, owners=None):
-        """Agree on new keys with some or everybody; meanwhile all goes over TLS.
+        """Negotiate new keys with some ends or all; meanwhile all messages use TLS.
 
-        :param owners: names in certificates; None for everybody
+        :param owners: names in certificates; None for all
         """
         for way in list(self._ways):
             if owners is None or any(is_of(owner, *way.ends) for owner in owners):
                 way.forget()
 
     def close(self):
-        """Send and take in nothing more."""
+        """Stop sending and receiving."""
         self._ended = True
         with self._lock:
             self._ways = []
 
     def fill(self, status):
-        """Add to a ``DiagnosticStatusWrapper`` with whom datagrams pass, and what was dropped."""
+        """Add to a ``DiagnosticStatusWrapper`` whether datagrams pass, and the drops."""
         now = self._clock()
         for way in list(self._ways):
-            status.add('sealed datagrams, ' + way.name, PASS if way.lane.used(now) else PASS_NOT)
+            status.add('sealed datagrams, ' + way.name, PASS if way.channel.used(now) else PASS_NOT)
         for why, count in sorted(self.refused.items()):
             status.add('dropped: ' + why, count)
 
     def places(self):
-        """Return [(socket, address)] of those that are called."""
+        """Return [(socket, address)] of the called ends."""
         return [(call.socket, call.address) for call in self._calls if call.address]
 
     def now(self):
@@ -181,8 +181,8 @@ class Datagrams:
                     self._add(fresh)
             for way in list(self._ways):
                 way.tick(now)
-        except Exception as error:  # without this thread no datagram would come any more
-            self.tell('the datagrams failed', error)
+        except Exception as error:  # this thread must not end: it receives all datagrams
+            self.log('the datagrams failed', error)
 
     def _read(self, source):
         for _ in range(_AT_ONCE):
@@ -191,43 +191,43 @@ class Datagrams:
             except OSError:
                 return
             try:
-                self._hear(packet, source, address)
+                self._receive(packet, source, address)
             except SealError as error:
                 self._refuse(str(error), address)
             except Exception as error:  # as above
-                self.tell('a datagram failed', error)
+                self.log('a datagram failed', error)
 
-    def _hear(self, packet, source, address):
+    def _receive(self, packet, source, address):
         run = run_of(packet)
-        way = next((way for way in list(self._ways) if way.lane.run == run), None)
+        way = next((way for way in list(self._ways) if way.channel.run == run), None)
         if way is None:
             raise SealError(STRANGER)
-        way.hear(packet, source, address)
+        way.receive(packet, source, address)
 
     def _refuse(self, why, address):
         self.refused[why] += 1
         if why not in _QUIET:
-            self.tell('dropped from {}'.format(address[0]), why)
+            self.log('dropped from {}'.format(address[0]), why)
 
-    def tell(self, what, why):
-        """Write a line into the log, of each reason once in a while."""
+    def log(self, what, why):
+        """Log a line, once per period for each reason."""
         now = self._clock()
-        if now - self._told_at.get(str(why), -TOLD_S) >= TOLD_S:
-            self._told_at[str(why)] = now
+        if now - self._logged_at.get(str(why), -LOG_S) >= LOG_S:
+            self._logged_at[str(why)] = now
             _LOG.warning('%s: %s', what, why)
 
 
 class _Call:
-    """Whom this end calls."""
+    """An address to connect to."""
 
     def __init__(self, host, port):
         self._host, self._port = host, port
         self._looked_at = -LOOK_UP_S
         self.socket = self.address = None
 
-    def look_up(self, now, heard):
-        """Find the address, in a while again; return a socket that is new, or None."""
-        if heard and self.address or now - self._looked_at < LOOK_UP_S:
+    def look_up(self, now, connected):
+        """Resolve the address periodically; return a new socket, or None."""
+        if connected and self.address or now - self._looked_at < LOOK_UP_S:
             return None
         self._looked_at = now
         try:
@@ -241,12 +241,12 @@ class _Call:
         return self.socket
 
 
-class Way:
+class DatagramPath:
     """Datagrams to and from one other end; made by :meth:`Datagrams.way`."""
 
-    def __init__(self, name, ends, port, lane, offer, topics):
-        self.name, self.ends, self.lane = name, ends, lane
-        # The socket and the address from where the newest datagram came.
+    def __init__(self, name, ends, port, channel, offer, topics):
+        self.name, self.ends, self.channel = name, ends, channel
+        # The socket and the source address of the newest datagram.
         self.place = None
         self._port, self._offer, self._topics = port, offer, topics
         self._lock = threading.Lock()
@@ -255,19 +255,19 @@ class Way:
         self._used = False
 
     def listen(self, on_bytes):
-        """Call a function with (topic, bytes) of all that comes, on a thread of the port's."""
+        """Set the callback of (topic, bytes) for messages, called on the thread of the port."""
         self._on_bytes = on_bytes
 
     def send(self, topic, data):
-        """Send a message; return whether it is on its way, else TLS has to carry it."""
+        """Send a message; return whether it was sent, otherwise it has to use TLS."""
         now = self._port.now()
-        if len(data) > MOST_BYTES or not self.lane.used(now):
+        if len(data) > MAX_BYTES or not self.channel.used(now):
             return False
         return self._go(topic, data, now)
 
     def _go(self, topic, data, now):
         with self._lock:
-            packet = self.lane.seal(topic, data, now)
+            packet = self.channel.seal(topic, data, now)
             if packet is None:
                 return False
             self._sent_at = now
@@ -275,43 +275,43 @@ class Way:
             try:
                 sender.sendto(packet, address)
             except OSError:
-                pass  # lost, as the radio loses others
+                pass  # lost, like any other datagram
         return True
 
-    def hear(self, packet, source, address):
-        """Take in a datagram for this run of the link.
+    def receive(self, packet, source, address):
+        """Handle a datagram for this run of the link.
 
-        :raises mhri.link.sealed.SealError: it does not count
+        :raises mhri.link.sealed.SealError: the datagram is refused
         """
         with self._lock:
-            topic, data = self.lane.open(packet, self._port.now())
+            topic, data = self.channel.open(packet, self._port.now())
             self.place = source, address
         if topic and topic != OFFER and self._topics(topic) and self._on_bytes is not None:
             self._on_bytes(topic, data)
 
     def on_offer(self, data):
-        """Take in what the other end told over TLS."""
+        """Handle an offer of the other end, received over TLS."""
         try:
             with self._lock:
-                news = self.lane.on_offer(data, self._port.now())
+                news = self.channel.on_offer(data, self._port.now())
         except FrameError as error:
-            self._port.tell('{}: refused'.format(self.name), error)
+            self._port.log('{}: refused'.format(self.name), error)
             return
         if news:
-            self._tell(self._port.now())
+            self._send_offer(self._port.now())
 
-    def _tell(self, now):
+    def _send_offer(self, now):
         self._offered_at = now
         with self._lock:
-            offer = self.lane.offer()
+            offer = self.channel.offer()
         self._offer(offer)
 
     def tick(self, now):
-        """Tell the key now and then, and show that datagrams pass."""
-        used = self.lane.used(now)
+        """Repeat the offer periodically, and send keepalives."""
+        used = self.channel.used(now)
         if now - self._offered_at >= (REMIND_S if used else OFFER_S):
-            self._tell(now)
-        gone = self.lane.silence_s(now) > GONE_S
+            self._send_offer(now)
+        gone = self.channel.silence_s(now) > GONE_S
         if gone and self._port.places():
             self.place = None
         if now - self._sent_at >= (OFFER_S if gone else SHOW_S):
@@ -321,8 +321,8 @@ class Way:
         self._used = used
 
     def forget(self):
-        """Agree on new keys."""
+        """Negotiate new keys."""
         with self._lock:
-            self.lane.forget()
+            self.channel.forget()
             self.place = None
         self._offered_at = float('-inf')

@@ -1,33 +1,33 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Who is in control of a linked robot, on the host: says it, and asks for it."""
+"""The host's view of control over a linked robot: publishes it, and requests control."""
+from dataclasses import replace
 import json
 import threading
 
 import rospy
 from std_srvs.srv import Trigger, TriggerResponse
 
-from mhri.link.control import Standing
+from mhri.link.control import ControlStatus, LEAVE
 from mhri.msg import LinkControl
 
-# The robot answers a request within this, or not at all [s]; meanwhile it is repeated.
+# Timeout of the robot's answer, and period of repeating the request [s].
 ANSWER_S, AGAIN_S = 2.0, 0.2
-LEAVE = b'[0]'
 
 
 class HostControl:
     """Publishes ``~state`` (``mhri/LinkControl``, latched), offers ``~take_control`` (``Trigger``).
 
-    :param host: what this computer is called on the link
-    :param secret: with keys
-    :param send: sends bytes down
+    :param host: name of this computer on the link
+    :param secret: whether the link has keys
+    :param send: sends bytes to the robot
     """
 
     def __init__(self, name, host, secret, send):
         self._name = name
         self._send = send
         self._answered = threading.Condition()
-        self._standing = Standing()
+        self._standing = ControlStatus()
         self._heard = False
         self._asked = 0
         self.state = LinkControl(host=host, keys=secret)
@@ -35,13 +35,13 @@ class HostControl:
         self._publisher.publish(self.state)
         rospy.Service('~take_control', Trigger, self._take)
 
-    def tick(self, linked):
-        """Take note of whether the robot is heard."""
+    def tick(self, linked, problem=''):
+        """Update whether the robot is linked, or why it is not."""
         with self._answered:
-            self._say(self._standing, linked)
+            self._say(replace(self._standing, said=problem) if problem else self._standing, linked)
 
-    def on_standing(self, standing):
-        """Take in what the robot says."""
+    def on_control_status(self, standing):
+        """Handle a status from the robot."""
         with self._answered:
             if standing.said and standing.said != self._standing.said:
                 rospy.loginfo('%s: %s', self._name, standing.said)
@@ -57,12 +57,12 @@ class HostControl:
             self._publisher.publish(state)
 
     def _take(self, _):
-        """Ask for control; where another host has it, ask twice."""
+        """Request control; if another host has it, a second request takes it."""
         with self._answered:
             self._asked = number = max(self._asked, self._standing.asked) + 1
             tries = round(ANSWER_S / AGAIN_S) if self._heard and self.state.linked else 0
         for _ in range(tries):
-            # Not under the lock: what comes in is taken in under that of the sender.
+            # Not under the lock: messages are received under the lock of the sender.
             self._send(json.dumps([number]).encode('ascii'))
             with self._answered:
                 if self._answered.wait_for(lambda: self._standing.asked >= number, AGAIN_S):
@@ -72,5 +72,5 @@ class HostControl:
         return TriggerResponse(False, '{} does not answer: is it linked?'.format(self._name))
 
     def leave(self):
-        """Give up control: this end of the link is closed."""
+        """Release control before this end of the link closes."""
         self._send(LEAVE)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""On the host: fetches what the robot kept while the link was gone, and makes one bag of it."""
+"""On the host: fetches the robot's recordings of a link outage, and joins them into one bag."""
 import collections
 import contextlib
 from datetime import datetime
@@ -17,32 +17,32 @@ from mhri.base.text import tidy_text
 from mhri.graph.ros.messages import installed_class
 from mhri.link.carried import GUARD_COMMAND
 from mhri.link.records import (
-    ASK, crc_of, Fetch, IN_SESSIONS, OFFER, pack_ask, PART, PICTURES, piece_of, RECORD,
+    ASK, Fetch, IN_SESSIONS, OFFER, pack_ask, PART, PICTURES, piece_of, RECORD,
     unpack_offer, unpack_part)
 from mhri.link.robot_claims import fits, OwnFrames, recorded_name
-from mhri.link.ros.keeper import folder_of
+from mhri.link.ros.keeper import crc_of_file, folder_of
 from mhri.msg import SessionState
 from mhri.recording.folder import NotASession
-from mhri.recording.recording import MB, ros_home
+from mhri.recording.recording import ros_home
 from mhri.recording.ros.bag_set import BagSet, DAMAGED
 from mhri.robots.figures import FETCHING
 
 WAIT_S = 0.1
-# Pieces overlap a little: of so many messages it is remembered that they are in the bag.
+# Pieces overlap a little: this many recent messages are checked for duplicates.
 REMEMBERED = 5000
-# After so many messages others have their turn for so long [s].
+# Pause of this duration after this many messages, to let other threads run [s].
 AT_ONCE, REST_S = 50, 0.005
 _NS = 10 ** 9
 
 
 def join(robot, paths, target, topics):
-    """Write one bag of pieces, with the names that everything has on the host.
+    """Join pieces into one bag, with the names used on the host.
 
-    A piece is what a robot says: what is not the robot's own, or of a type that is not installed
-    here, is left out.
+    Pieces are not trusted: topics that do not belong to the robot, and types that are not installed
+    here, are omitted.
 
-    :param topics: what is carried of the robot, as in :class:`mhri.link.carried.Stream`
-    :returns: sentences about what is left out
+    :param topics: carried topics of the robot, as in :class:`mhri.link.carried.Stream`
+    :returns: sentences about omitted parts
     :raises OSError: the bag cannot be written
     """
     frames = OwnFrames(robot)
@@ -54,7 +54,7 @@ def join(robot, paths, target, topics):
             if not name or not fits(kind, data):
                 strange.add(recorded.connection.topic)
                 continue
-            # Not the message: with pictures that many take gigabytes.
+            # A hash, not the message: that many pictures would take gigabytes.
             key = name, len(data), hash(data)
             if key in recent:
                 continue
@@ -63,7 +63,7 @@ def join(robot, paths, target, topics):
                 recent.popitem(last=False)
             written += 1
             if written % AT_ONCE == 0:
-                # Commands go through this program, too.
+                # This process also forwards commands.
                 time.sleep(REST_S)
             try:
                 data = frames.of(name, kind, data)
@@ -77,7 +77,7 @@ def join(robot, paths, target, topics):
 
 
 def _messages(paths, problems):
-    """Yield the messages of pieces, as far as they can be read; add why others cannot."""
+    """Yield the readable messages of pieces; append the problems with unreadable ones."""
     for path in paths:
         try:
             with contextlib.closing(BagSet([path])) as piece:
@@ -88,17 +88,17 @@ def _messages(paths, problems):
 
 
 class HostRecord:
-    """Asks the robot, writes what comes, and says how far it is, on a thread of its own.
+    """Requests recordings, writes them, and publishes the progress, on its own thread.
 
     Publishes ``/<robot>/mhri_link/fetching`` (``std_msgs/String``, latched), serves
-    ``/<robot>/mhri_link/keep`` (``std_srvs/SetBool``): whether the robot shall record for later
-    what this host misses. It does so anyway while a session is recorded
-    (``/mhri_session/state``, ``mhri/SessionState``). The bag is ``<robot>_missed_<date-time>.bag``
-    in the folder of the session, or in ``$ROS_HOME``.
+    ``/<robot>/mhri_link/keep`` (``std_srvs/SetBool``): whether the robot records outages for this
+    host. It always does while a session is recorded (``/mhri_session/state``,
+    ``mhri/SessionState``). The bag is ``<robot>_missed_<date-time>.bag`` in the folder of the
+    session, or in ``$ROS_HOME``.
 
-    :param side: of the link
-    :param topics: function that returns what is carried of the robot
-    :param keep: when it does, and what, from the start: see :mod:`mhri.link.records`
+    :param side: the host side of the link
+    :param topics: returns the carried topics of the robot
+    :param keep: when the robot records, see :mod:`mhri.link.records`
     """
 
     def __init__(self, side, topics, keep=IN_SESSIONS):
@@ -127,15 +127,15 @@ class HostRecord:
     def _on_keep(self, request):
         self._keep = request.data
         self._work.set()
-        return SetBoolResponse(True, 'the robot keeps what is missed here' if request.data
-                               else 'what is missed here is lost')
+        return SetBoolResponse(True, 'the robot records during outages' if request.data
+                               else 'the robot does not record during outages')
 
     def start(self):
-        """Begin."""
+        """Start the thread."""
         threading.Thread(target=self._run, name='record', daemon=True).start()
 
     def on_frame(self, topic, body):
-        """Take in what the robot says, if it is of this class; return whether it is."""
+        """Handle a message if it concerns recordings; return whether it does."""
         if topic not in (OFFER, PART):
             return False
         self._came.append((topic, body))
@@ -148,7 +148,7 @@ class HostRecord:
             self._work.clear()
             try:
                 self._tick(self._side.clock())
-            except Exception as error:  # the disk, bytes that are none: the link goes on
+            except Exception as error:  # a full disk, malformed bytes: the link continues
                 if not rospy.is_shutdown():
                     rospy.logwarn_throttle(10.0, '{}: cannot fetch what was recorded: {!r}'.format(
                         self._side.name, error))
@@ -156,7 +156,7 @@ class HostRecord:
     def _tick(self, now):
         if self._fetch is None:
             os.makedirs(self._folder, exist_ok=True)
-            # Those of an earlier run; what came in part goes by the name that it gets when whole.
+            # Pieces of an earlier run; a file is named like a piece once it is complete.
             self._fetch = Fetch(done=[piece for piece in map(piece_of, os.listdir(self._folder))
                                       if piece is not None],
                                 asked=os.path.exists(self._asked))
@@ -176,13 +176,13 @@ class HostRecord:
         if done:
             self._finish(done)
         self._say(fetch.words(self._side.name) or self.text)
-        ask = fetch.ask(now) if self._side.peer.heard(now) else None
+        ask = fetch.ask(now) if self._side.peer.is_live(now) else None
         self._remember(fetch)
         if ask is not None:
             self._side.send(ASK, RECORD, pack_ask(ask))
 
     def _remember(self, fetch):
-        """Remember over a restart that the robot was asked, before it is."""
+        """Store the request of recordings across restarts, before it is sent."""
         if fetch.asked != os.path.exists(self._asked):
             if fetch.asked:
                 open(self._asked, 'wb').close()
@@ -202,31 +202,27 @@ class HostRecord:
                 file.write(data)
 
     def _check(self, piece):
-        crc = 0
-        with open(self._part, 'rb') as file:
-            for data in iter(lambda: file.read(MB), b''):
-                crc = crc_of(data, crc)
-        good = crc == piece.crc
+        good = crc_of_file(self._part) == piece.crc
         if good:
             os.rename(self._part, self._path(piece))
         else:
-            rospy.logwarn('%s: %s came wrong: fetched once more', self._side.name, piece.name)
+            rospy.logwarn('%s: %s arrived damaged: fetched again', self._side.name, piece.name)
         self._fetch.checked(piece, good)
 
     def _finish(self, pieces):
-        """Make one bag of what came."""
+        """Join the fetched pieces into one bag."""
         begun = datetime.fromtimestamp(1e-3 * pieces[0].begun_ms)
         folder = self._session.folder if self._session is not None else ''
         target = os.path.join(
             folder if os.path.isdir(folder) else ros_home(os.environ),
             '{}_missed_{:%Y-%m-%d-%H-%M-%S}.bag'.format(self._side.name, begun))
         paths = [self._path(piece) for piece in pieces]
-        # Never over another file.
+        # Never overwrite a file.
         os.close(os.open(target, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))
         left_out = join(self._side.name, paths, target,
                         list(self._topics()) + [GUARD_COMMAND])
         for sentence in left_out:
-            # It has names in it that the robot chose.
+            # The sentence contains names chosen by the robot.
             rospy.logwarn('%s: left out: %s', os.path.basename(target), tidy_text(sentence, 500))
         for path in paths:
             os.unlink(path)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the host's side of a link tells the doctor, as the parameter ``~link``."""
+"""The report of the host side of a link to the doctor, as the parameter ``~link``."""
 import importlib.metadata
 import os
 import threading
@@ -15,13 +15,13 @@ _LOOK_S = 1.0
 
 
 def versions():
-    """Return {'mhri': version, 'zenoh': version} of this side; '' for what is not known."""
+    """Return {'mhri': version, 'zenoh': version} of this side; '' if unknown."""
     found = {'mhri': '', 'zenoh': ''}
     try:
         found['mhri'] = parse_package(os.path.join(
             rospkg.RosPack().get_path('mhri'), 'package.xml')).version
     except (InvalidPackage, OSError, rospkg.ResourceNotFound):
-        pass  # then there is nothing to compare
+        pass  # version unknown
     try:
         found['zenoh'] = importlib.metadata.version('eclipse-zenoh')
     except importlib.metadata.PackageNotFoundError:
@@ -32,11 +32,11 @@ def versions():
 class Note:
     """The parameter ``~link``: a dictionary, see :class:`mhri.doctor.facts.LinkNote`.
 
-    It goes when the node is ended in order, and stays where it failed or was killed: then it tells
+    It is deleted at a regular end of the node, and remains if the node fails or is killed, to show
     that there should be a link.
 
-    :param endpoint: whom this side calls, or where it listens
-    :param router: that is a router
+    :param endpoint: endpoint that this side connects to, or listens on
+    :param router: whether that is a router
     """
 
     def __init__(self, endpoint, router):
@@ -44,37 +44,40 @@ class Note:
         self._note = {'endpoint': endpoint, 'router': router, 'heard': 'never'}
 
     def failed(self, trouble, problem):
-        """Say why the side cannot start: ``trouble`` is ``library``, ``keys`` or ``endpoint``."""
+        """Publish why the side cannot start.
+
+        :param trouble: ``library``, ``endpoint``, or the cause of a :class:`KeysError`
+        """
         rospy.set_param(self._name, dict(self._note, trouble=trouble, problem=str(problem)))
 
     def follow(self, side, watch, secret):
-        """Keep it as things are; returns at once.
+        """Keep it up to date, on a thread.
 
         :param side: :class:`mhri.link.ros.host_side.HostSide`
         :param watch: :class:`mhri.graph.ros.master_watch.MasterWatch`
-        :param secret: with keys
+        :param secret: whether the link has keys
         """
         self._note.update(secret=secret, own=versions())
         threading.Thread(target=self._run, args=(side, watch), name='note', daemon=True).start()
         rospy.on_shutdown(self._take_back)
 
     def _run(self, side, watch):
-        told, pause = None, threading.Event()
+        published, pause = None, threading.Event()
         while not rospy.is_shutdown():
-            if side.heard():
+            if side.is_live():
                 self._note.update(heard='yes', peer=side.versions())
             elif self._note['heard'] == 'yes':
                 self._note['heard'] = 'no'
-            if self._note != told:
+            if self._note != published:
                 try:
                     watch.set_parameter(self._name, dict(self._note))
-                    told = dict(self._note)
+                    published = dict(self._note)
                 except MasterError:
-                    pass  # again the next time
+                    pass  # retried in the next period
             pause.wait(_LOOK_S)
 
     def _take_back(self):
         try:
             rospy.delete_param(self._name)
         except (KeyError, OSError, rospy.ROSException):
-            pass  # the master has ended, or forgotten it
+            pass  # the master has ended, or has lost the parameter

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Sends pictures over a radio that does not bear them all: newest only, smaller, piece by piece."""
+"""Sends pictures over a slow radio: only the newest, reduced in size, and in pieces."""
 import threading
 import time
 
@@ -8,18 +8,18 @@ import rospy
 
 from mhri.link.pieces import split
 from mhri.link.shares import Flow, Share
-from mhri.link.smaller import KIND, Smaller
+from mhri.link.picture_shrinker import KIND, PictureShrinker
 
-# Without news it is looked again after so long [s].
+# Period of checking for due pictures [s].
 IDLE_S = 0.2
 
 
 class Pictures:
-    """Sends the newest picture of each stream in its turn, on a thread of its own.
+    """Sends the newest picture of each stream in turn, on its own thread.
 
-    Pieces go one by one at the pace of the share, so that nothing else waits behind a picture.
+    Pieces are sent at the pace of the share, so that other messages do not wait behind a picture.
 
-    :param send: called with (stream, piece); returns whether the stream goes on
+    :param send: called with (stream, piece); returns whether to continue the stream
     :param rename: called with (bytes, number of names in it); returns the bytes to send
     """
 
@@ -39,32 +39,32 @@ class Pictures:
         threading.Thread(target=self._run, name='pictures', daemon=True).start()
 
     def share(self, shares):
-        """Go over to other shares, {topic: :class:`mhri.link.shares.Share`}."""
+        """Set the shares, {topic: :class:`mhri.link.shares.Share`}."""
         with self._lock:
             self._shares = shares
 
     def offer(self, stream, kind, data, names):
-        """Take in a picture; one that waited gives way."""
+        """Queue a picture; it replaces a waiting one of the same stream."""
         with self._lock:
             self._waiting[stream.topic] = (stream, kind, data, names, self._clock())
         self._news.set()
 
     def waits(self):
-        """Tell whether a picture waits for its turn."""
+        """Return whether a picture is waiting."""
         with self._lock:
             return bool(self._waiting)
 
     def close(self):
-        """Send none any more."""
+        """Stop sending."""
         self._ended = True
 
     def forget(self):
-        """Send none of those that wait."""
+        """Drop the waiting pictures."""
         with self._lock:
             self._waiting.clear()
 
     def _take(self, now):
-        """Return (picture, its share) that is due first, None if none is."""
+        """Return (picture, its share) of the first due picture, or None."""
         with self._lock:
             due = [topic for topic in self._waiting if self._due.get(topic, 0.0) <= now
                    and self._share(topic).hz]
@@ -82,18 +82,18 @@ class Pictures:
             if found is None:
                 self._news.wait(IDLE_S)
                 self._news.clear()
-                # A picture may be there that is not due yet.
+                # A waiting picture may not be due yet.
                 time.sleep(0.01)
                 continue
             try:
                 self._go(*found)
-            except Exception as error:  # without this thread no picture would come any more
+            except Exception as error:  # this thread must not end: it sends all pictures
                 rospy.logwarn_throttle(10.0, 'a picture is not sent: {!r}'.format(error))
 
     def _go(self, picture, share):
         stream, kind, data, names, taken_at = picture
         if kind == KIND:
-            smaller = self._smaller.setdefault(stream.topic, Smaller())
+            smaller = self._smaller.setdefault(stream.topic, PictureShrinker())
             data = smaller.fit(data, share.size)
         self._number += 1
         pieces = split(self._number, taken_at, self._rename(data, names, self._number),
@@ -114,6 +114,6 @@ class Pictures:
             self._flows.setdefault(stream.topic, Flow(stream)).came(now)
 
     def most_hz(self):
-        """Return how often pictures go of the stream of which most do [Hz]."""
+        """Return the highest rate of pictures of a stream [Hz]."""
         with self._lock:
             return max((flow.hz(self._clock()) for flow in self._flows.values()), default=0.0)

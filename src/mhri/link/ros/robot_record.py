@@ -1,26 +1,27 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""On the robot: answers one host that fetches what it missed."""
+"""On the robot: serves the recordings of outages to one host."""
 import threading
 import time
 
 import rospy
 
-from mhri.link.records import OFFER, pack_offer, pack_part, PART, PART_BYTES, RECORD, unpack_ask
+from mhri.link.records import (
+    MAX_STEPS, OFFER, pack_offer, pack_part, PART, RECORD, STEP_BYTES, unpack_ask)
 from mhri.link.ros.keeper import keeper_of
 
 TICK_S = 0.5
-# Where the radio does not bear everything this share of what it bears is for what was missed.
+# Fraction of the rate of a limited radio for recordings.
 SHARE = 0.15
-# So long one answer may take then [s].
-ANSWER_S = 2.0
+# Maximum pause after a part on a limited radio [s].
+PAUSE_S = 2.0
 
 
 class RobotRecord:
-    """Answers, and tells the keeper what this host wants, on a thread of its own: the disk waits.
+    """Answers requests, and updates the keeper, on its own thread, since the disk may block.
 
-    :param side: of the link with the host
-    :param topics: function that returns what to record, absolute names: with pictures if it is
+    :param side: side of the link to the host
+    :param topics: returns the absolute names of the topics to record; with pictures if it is
         called with True
     """
 
@@ -33,13 +34,13 @@ class RobotRecord:
         self._asked = threading.Event()
 
     def start(self):
-        """Begin."""
+        """Start the thread."""
         threading.Thread(target=self._run, name='record', daemon=True).start()
 
     def on_ask(self, body):
-        """Take in what the host says; the newest counts.
+        """Handle a request; only the newest counts.
 
-        :raises FrameError: it is no such thing
+        :raises FrameError: it is malformed
         """
         self._ask = unpack_ask(body)
         self._asked.set()
@@ -54,9 +55,10 @@ class RobotRecord:
                 now = self._side.clock()
                 if now - ticked_at >= TICK_S:
                     ticked_at = now
-                    self._keeper.want(self, self._keep, self._side.peer.heard(now), self._pictures)
+                    self._keeper.request(self, self._keep, self._side.peer.is_live(now),
+                                         self._pictures)
                     self._keeper.tick(self._topics(self._keeper.pictures_too()))
-            except Exception as error:  # the disk, a master that is gone: the link goes on
+            except Exception as error:  # a full disk, a missing master: the link continues
                 if not self._side.ended():
                     rospy.logwarn_throttle(10.0, '{}: cannot record: {!r}'.format(
                         self._side.name, error))
@@ -64,7 +66,7 @@ class RobotRecord:
         self._keeper.forget(self)
 
     def keeps(self):
-        """Tell whether this host wants what it misses."""
+        """Return whether to record for this host."""
         return self._keep
 
     def _answer(self):
@@ -77,13 +79,9 @@ class RobotRecord:
         if ask.number < 0 or ask.have or all(piece.number != ask.number for piece in pieces):
             self._side.send(OFFER, RECORD, pack_offer(pieces))
         bytes_per_s = SHARE * self._side.thinned.bytes_per_s
-        count = ask.count if not bytes_per_s else \
-            min(ask.count, max(1, int(ANSWER_S * bytes_per_s / PART_BYTES)))
-        for part in range(count):
-            offset = ask.offset + part * PART_BYTES
-            data = self._keeper.read(ask.number, offset, PART_BYTES)
-            if not data:
-                return
-            self._side.send(PART, RECORD, pack_part(ask.number, offset, data))
+        steps = min(ask.count, 1 if bytes_per_s else MAX_STEPS)
+        data = self._keeper.read(ask.number, ask.offset, steps * STEP_BYTES)
+        if data:
+            self._side.send(PART, RECORD, pack_part(ask.number, ask.offset, data))
             if bytes_per_s:
-                time.sleep(min(ANSWER_S, len(data) / bytes_per_s))
+                time.sleep(min(PAUSE_S, len(data) / bytes_per_s))

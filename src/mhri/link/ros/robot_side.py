@@ -9,45 +9,46 @@ from mhri.base.robot_types import resolve_robot_type
 from mhri.driving.guard_link import parse_id
 from mhri.graph.ros.master_api import MasterApi, MasterError
 from mhri.graph.ros.messages import bytes_of, message_class
-from mhri.graph.ros.prompt import PromptPublisher
+from mhri.graph.ros.non_blocking import NonBlockingPublisher
 from mhri.graph.ros.subscription import Subscription
-from mhri.link.bearing import Bearing
 from mhri.link.carried import (
-    DOWN, FRAME_NAMES, full_topic, GUARD_COMMAND, Pace, PICTURE, TF, TF_STATIC, up_streams,
+    DOWN, FRAME_NAMES, full_topic, GUARD_COMMAND, Pace, PICTURE, STATE, TF, TF_STATIC, up_streams,
     worth_carrying)
-from mhri.link.control import moves
+from mhri.link.control import LEAVE, moves
 from mhri.link.frames import About, DEFLATED, pack_about, PIECE, PLAIN, Thinned
 from mhri.link.peer import may_pass
+from mhri.link.rate_estimator import RateEstimator
 from mhri.link.records import ASK
 from mhri.link.renaming import first_text, renamer, rewritten, Transforms
 from mhri.link.robot_claims import PARAMETERS
 from mhri.link.ros.note import versions
 from mhri.link.ros.pictures import Pictures
-from mhri.link.ros.recall import Recall
+from mhri.link.ros.reregister import Reregistration
 from mhri.link.ros.robot_record import RobotRecord
-from mhri.link.ros.side import CONTROL, Side
+from mhri.link.ros.side import ABOUT, CONTROL, Side
 from mhri.link.shares import Flow, shares
+from mhri.robots.owners import called
 
 LOOK_S = 1.0
-# What nobody on the host listens to any more stays subscribed for a while [s].
+# Topics without subscribers on the host stay subscribed for this long [s].
 LINGER_S = 5.0
 LATCHED_S = 1.0
-# On a busy computer the radio may seem full twice a minute: one line of that in so long [s].
-TOLD_S = 60.0
-# Smaller messages are not worth packing [bytes].
+# Period of the log lines about a full radio, which a busy computer may fake twice a minute [s].
+LOG_S = 60.0
+# Smaller messages are not worth compressing [bytes].
 PACKED_BYTES = 200
 
 
-class Carried:
-    """One stream while somebody on the host listens to it.
+class CarriedStream:
+    """One stream while it has subscribers on the host.
 
     :param stream: :class:`mhri.link.carried.Stream`
-    :param send: called with (stream, type, bytes, number of names in it); returns of how many bytes
-        the message was, 0 if it was not sent
+    :param send: called with (stream, type, bytes, number of names in it); returns the size of the
+        sent message, 0 if it was not sent
     """
 
     def __init__(self, namespace, stream, rename, send, clock):
-        self.wanted_at = clock()
+        self.requested_at = clock()
         self.stream = stream
         self._send = send
         self._clock = clock
@@ -62,7 +63,7 @@ class Carried:
         self._subscription = Subscription(full_topic(namespace, stream.topic), self._hear)
 
     def _hear(self, kind, data):
-        """Send a message on, or keep it for the next time (on rospy's thread)."""
+        """Forward a message if due; store transforms and latched ones (on rospy's thread)."""
         if self._transforms is not None:
             try:
                 self._transforms.add(bytes(data))
@@ -86,7 +87,7 @@ class Carried:
                 self.flow.sized(size)
 
     def thin(self, share):
-        """Go over to a share; None to send all. Pictures are thinned by :class:`Pictures`."""
+        """Apply a share, None: no reduction. Pictures are thinned out by :class:`Pictures`."""
         self._whole = share is not None and self.stream.urgency == PICTURE
         rate_hz = self.stream.rate_hz
         if share is not None:
@@ -94,99 +95,98 @@ class Carried:
         self._pace.change(rate_hz)
 
     def again(self, now):
-        """Send what is latched once more: the radio may have lost it, or somebody came later."""
+        """Send a latched message again, since it may be lost, or for later subscribers."""
         if self.stream.latched and now - self._sent_at >= LATCHED_S:
             self._go('', self._newest, now)
 
     def close(self):
-        """Stop listening (blocking: it asks the master)."""
+        """Unsubscribe (blocking: calls the master)."""
         self._subscription.close()
 
 
 class RobotSide(Side):
-    """The link with one host: sends up what it listens to, and gives the guard what it commands.
+    """The link to one host: sends its subscribed topics to it, and its commands to the guard.
 
-    Subscribes the topics of the robot's type, ``mhri_guard/echo``, ``mhri_guard/state``,
-    ``mhri_guard/dropped``, ``/tf`` and ``/tf_static`` while a node on the host listens to them.
-    Publishes ``mhri_guard/command`` (``geometry_msgs/TwistStamped``; nothing older than 0.3 s but
+    Subscribes to the topics of the robot's type, ``mhri_guard/echo``, ``mhri_guard/state``,
+    ``mhri_guard/dropped``, ``/tf`` and ``/tf_static`` while they have subscribers on the host.
+    Publishes ``mhri_guard/command`` (``geometry_msgs/TwistStamped``; not older than 0.3 s, except
     stops) and ``mhri_guard/heard`` (``std_msgs/String``), both for the guard.
 
-    :param namespace: of the robot on its own master, such as ``/bot1``, or '' for none
+    :param namespace: of the robot on its own master, such as ``/bot1``, or '' without one
     :param types: {name: RobotType}
     :param shared: frames that keep their names
-    :param desk: :class:`mhri.link.ros.reception.Desk`, which knows whether that host has control
+    :param peer_control: :class:`mhri.link.ros.link_server.PeerControl` of that host
     """
 
-    def __init__(self, name, carrier, namespace, types, shared, desk, **options):
+    def __init__(self, name, carrier, namespace, types, shared, peer_control, **options):
         super().__init__(name, carrier, 'up', **options)
-        self._desk = desk
+        self._peer_control = peer_control
         self.dropped = 0
         self._namespace = namespace
         self._types = types
         self._rename = renamer(name, shared)
-        self._recall = Recall()
+        self._reregistration = Reregistration()
         self._record = RobotRecord(self, self._recorded)
         self._about = About({'link': versions()}, ())
         self._told_at = self._looked_at = 0.0
-        self._wanted = ()
-        self._bearing, self._bound = Bearing(), False
+        self._requested = ()
+        self._estimator, self._bound = RateEstimator(), False
         self._pictures = Pictures(self.clock, self._up_piece, lambda data, names, number: rewritten(
             data, number, names, self._rename))
         self._streams = {}
         self._open = {}
         self._publishers = {
-            stream.topic: PromptPublisher(full_topic(namespace, stream.topic),
-                                          bytes_of(message_class(kind)), queue_size=10)
+            stream.topic: NonBlockingPublisher(full_topic(namespace, stream.topic),
+                                               bytes_of(message_class(kind)), queue_size=10)
             for stream, kind in DOWN}
 
     def start(self):
-        """Begin, and record what the host asks for."""
+        """Start, and record on request of the host."""
         self._record.start()
         return super().start()
 
     def _recorded(self, pictures):
-        """Return what is recorded."""
+        """Return the absolute names of the topics to record."""
         topics = [stream.topic for stream in list(self._streams.values())
                   if pictures or stream.urgency != PICTURE]
         return sorted(full_topic(self._namespace, topic) for topic in topics + [GUARD_COMMAND]) \
             if topics else []
 
     def said(self):
-        """Name what this robot says of itself."""
+        """Return the name of this robot's description."""
         return self._about.name, ()
 
     def on_peer(self, beat, now):
-        """Take in which topics somebody on the host listens to."""
-        self._desk.on_heard(now)
-        wanted = ()
+        """Handle the list of topics with subscribers on the host."""
+        self._peer_control.on_heard(now)
+        requested = ()
         if beat.about == self._about.name:
-            wanted = tuple(self._about.topics[place][0] for place in beat.wanted
-                           if 0 <= place < len(self._about.topics))
+            requested = tuple(self._about.topics[place][0] for place in beat.requested
+                              if 0 <= place < len(self._about.topics))
         elif now - self._told_at >= 0.5 and self._about.topics:
             self._told_at = now
-            self.send_about(pack_about(self._about))
-        if wanted != self._wanted:
-            self._wanted = wanted
+            self.send(ABOUT, STATE, pack_about(self._about))
+        if requested != self._requested:
+            self._requested = requested
             self.to_do.set()
-        self._thin(beat.heard, now)
+        self._thin(beat.stats, now)
 
-    def _thin(self, heard, now):
-        """Send as much as the radio bears, by what the host's side says that came, and others'."""
+    def _thin(self, stats, now):
+        """Adapt the rates to the capacity of the radio, according to the reports of the hosts."""
         opened = [carried for topic, carried in list(self._open.items())
-                  if topic in self._wanted]
-        flows, bearing = [carried.flow for carried in opened], self._bearing
+                  if topic in self._requested]
+        flows, estimator = [carried.flow for carried in opened], self._estimator
         was_bound = self._bound
-        if heard is not None:
-            bearing.on_heard(heard, sum(flow.demand(now) for flow in flows), now)
-        bytes_per_s = self._desk.share(bearing.bytes_per_s if bearing.bound else math.inf,
-                                       heard is not None, now)
+        if stats is not None:
+            estimator.on_stats(stats, sum(flow.demand(now) for flow in flows), now)
+        bytes_per_s = self._peer_control.share(estimator.bytes_per_s, stats is not None, now)
         self._bound = math.isfinite(bytes_per_s)
         if not (was_bound or self._bound):
             return
         if not was_bound:
             for flow in flows:
                 flow.packed()
-        found = shares(flows, bytes_per_s, bearing.loss, now, bearing.quiet) \
+        found = shares(flows, bytes_per_s, estimator.loss, now, estimator.quiet) \
             if self._bound else {}
         for carried in opened:
             carried.thin(found.get(carried.stream.topic))
@@ -196,18 +196,21 @@ class RobotSide(Side):
             if found else Thinned()
         if not self._bound:
             self._pictures.forget()
-            rospy.loginfo_throttle(TOLD_S, '{}: the radio bears everything'.format(self.name))
+            rospy.loginfo_throttle(LOG_S, '{}: the radio carries everything'.format(self.name))
         elif not was_bound:
-            rospy.loginfo_throttle(TOLD_S, '{}: the radio bears {:.0f} kB/s: less is sent'.format(
+            rospy.loginfo_throttle(LOG_S, '{}: limited to {:.0f} kB/s by the radio'.format(
                 self.name, 1e-3 * bytes_per_s))
 
     def on_frame(self, topic, frame, now):
-        """Give the guard a command, unless it is late, or another host has control."""
+        """Pass a command to the guard, unless it is late or another host has control."""
         if topic == ASK:
             self._record.on_ask(frame.body)
             return
         if topic == CONTROL:
-            self._desk.on_asked(frame.body, now)
+            self._peer_control.on_asked(frame.body, now)
+            if frame.body == LEAVE:
+                # Its successor need not wait until it counts as silent.
+                self.peer.on_gone()
             return
         publisher = self._publishers.get(topic)
         if publisher is None:
@@ -222,38 +225,38 @@ class RobotSide(Side):
 
     def _passes(self, topic, body, age_s, now):
         if topic != GUARD_COMMAND:
-            return self._desk.holds()
+            return self._peer_control.holds()
         frame_id = first_text(body)
-        return may_pass(frame_id, age_s) and self._desk.passes(
+        return may_pass(frame_id, age_s) and self._peer_control.passes(
             parse_id(frame_id)[3], moves(body), now)
 
     def work(self, now):
-        """Look at the master now and then; open and close what is listened to."""
+        """Query the master periodically; open and close streams."""
         if now - self._looked_at >= LOOK_S:
             self._looked_at = now
             try:
-                self._recall.look()
+                self._reregistration.look()
                 self._look()
             except MasterError as error:
                 rospy.logdebug('%s', error)
         with self.lock:
-            wanted = self._wanted if self.peer.heard(now) else ()
-        for topic in wanted:
+            requested = self._requested if self.peer.is_live(now) else ()
+        for topic in requested:
             if topic in self._open:
-                self._open[topic].wanted_at = now
+                self._open[topic].requested_at = now
             elif topic in self._streams:
-                self._open[topic] = Carried(self._namespace, self._streams[topic], self._rename,
-                                            self._up, self.clock)
+                self._open[topic] = CarriedStream(self._namespace, self._streams[topic],
+                                                  self._rename, self._up, self.clock)
         for topic, carried in list(self._open.items()):
-            if now - carried.wanted_at > LINGER_S:
+            if now - carried.requested_at > LINGER_S:
                 del self._open[topic]
                 carried.close()
-            elif topic in wanted:
+            elif topic in requested:
                 carried.again(now)
 
     def _goes(self, stream):
-        """Tell whether anybody would hear a stream."""
-        return stream.topic in self._wanted and self.peer.heard(self.clock())
+        """Return whether a stream has receivers."""
+        return stream.topic in self._requested and self.peer.is_live(self.clock())
 
     def _up(self, stream, kind, data, names):
         with self.lock:
@@ -280,9 +283,9 @@ class RobotSide(Side):
             return goes
 
     def _look(self):
-        """Learn the robot's type and topics; what was there once stays, whatever a master forgets.
+        """Update the robot's type and topics; known ones remain even if the master loses them.
 
-        :raises MasterError: it cannot be asked now
+        :raises MasterError: the master is unavailable
         """
         api = MasterApi(rospy.get_name(), timeout_s=1.0)
         state, types, *found = api.call_many(
@@ -310,11 +313,11 @@ class RobotSide(Side):
             self._about = About(parameters, tuple(sorted(topics.items())))
 
     def keeps(self):
-        """Tell whether the host wants what it misses."""
+        """Return whether to record for the host."""
         return self._record.keeps()
 
     def leave(self):
-        """Forget this host (blocking: it asks the master); :meth:`close` ends all of them."""
+        """Close only this side (blocking: calls the master)."""
         self._ended.set()
         self._carrier.close()
         self._pictures.close()
@@ -323,10 +326,15 @@ class RobotSide(Side):
         for publisher in self._publishers.values():
             publisher.unregister()
 
-    def unheard(self, silence_s):
-        """Return in words that the host is not heard, for so long [s]."""
-        return 'the host is not heard' if silence_s < 1e9 else 'the host was never heard'
+    def silence_text(self, silence_s):
+        """Describe the silence of the host [s]."""
+        return 'the host is silent' if silence_s < 1e9 else 'the host has never connected'
+
+    def second_text(self):
+        """Describe that a second computer has the name of the host."""
+        return 'a second computer is called {}, and is not linked: give it another name ' \
+            '(mhri_link --host NAME)'.format(called(self._peer_control.host))
 
     def close(self):
-        """Say nothing more; the guard ends what is being driven."""
-        rospy.loginfo('%s: %d commands kept from the guard', self.name, self.dropped)
+        """Log statistics at the end; the guard stops the robot."""
+        rospy.loginfo('%s: %d commands not passed to the guard', self.name, self.dropped)

@@ -1,37 +1,29 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the map is painted with: the ground that seldom changes, points, robots, goals, words."""
-from functools import lru_cache
+"""Painting functions of the map: ground, points, robots, goals, labels."""
 import math
 
 import numpy as np
 from python_qt_binding.QtCore import QPointF, QRectF, Qt
 from python_qt_binding.QtGui import (
-    QColor, QFont, QFontMetrics, QImage, QPainter, QPainterPath, QPalette, QPen, QPolygonF)
+    QColor, QFontMetrics, QImage, QPainter, QPalette, QPen, QPolygonF)
 
 from mhri.base.gui import theme
+from mhri.base.gui.painting import edged_words
+from mhri.base.gui.robot_sign import hue_of, paint_number, paint_shape, radius_px
 from mhri.base.series import round_step
 from mhri.base.views import GONE
 from mhri.map.trail import GOOD, LOST, SLOW
 
-# The hue of a robot's disc, trail and points, by its number, on light and on dark: of Okabe and
-# Ito and between them, without those that mean something else here. The number says the same.
-_HUES = (('#0072B2', '#56B4E9'), ('#A14F80', '#CC79A7'), ('#6F6400', '#F0E442'),
-         ('#5B4BC4', '#A99BF5'), ('#00766E', '#5FD3C6'), ('#7A5A2E', '#D9B98C'))
 _LINK_TONES = {GOOD: theme.LIVE, SLOW: theme.ATTENTION, LOST: theme.STOP}
-# So much of the ground is mixed into a trail, by how old it is.
+# Share of the ground colour in a trail, by its age.
 _FADES = (0.0, 0.35, 0.65)
 _STROKES = (Qt.SolidLine, Qt.DashLine, Qt.DotLine)
-# Lines of the ground are at least so far apart [px].
+# Minimum distance of grid lines [px].
 _LINES_PX = 44.0
 _POINT_PX = 3
-# Room around words for their edge.
+# Margin of labels for their outline.
 _EDGE_PX = 2
-
-
-def hue_of(number, palette):
-    """Return the :class:`QColor` of the robot of a number."""
-    return QColor(_HUES[max(0, number - 1) % len(_HUES)][theme.is_dark(palette)])
 
 
 def polygon_of(pixels):
@@ -40,7 +32,7 @@ def polygon_of(pixels):
 
 
 def grid_picture(grid, palette):
-    """Return a :class:`Grid` as a picture, its lowest row on top, and what keeps its memory."""
+    """Return (a :class:`Grid` as a picture, its lowest row on top, the owner of its memory)."""
     free, taken = palette.color(QPalette.Base), palette.color(QPalette.WindowText)
     unknown = theme.blend(palette.color(QPalette.Window), taken, 0.16)
     table = np.array([unknown.rgb()] + [theme.blend(free, taken, 0.9 * share / 100.0).rgb()
@@ -51,7 +43,7 @@ def grid_picture(grid, palette):
 
 
 class Ground:
-    """The map, lines of whole metres, the fence and the trails: painted once for many drawings."""
+    """The background: map, grid lines, fence and trails, cached across repaints."""
 
     def __init__(self):
         self._key = None
@@ -60,11 +52,11 @@ class Ground:
         self.painted = 0
 
     def pixels(self, key, canvas, ratio, paint):
-        """Return the picture as an array (height, width) of RGB32; it is not to be changed.
+        """Return the picture as a read-only array (height, width) of RGB32.
 
-        :param key: what it depends on: the same again costs nothing
-        :param ratio: pixels of the screen for one of the widget
-        :param paint: function of the :class:`QPainter` that paints it anew
+        :param key: everything that the picture depends on; it is only repainted on a change
+        :param ratio: screen pixels per widget pixel
+        :param paint: function of a :class:`QPainter` that paints the picture
         """
         key = (key, canvas, ratio)
         if key != self._key:
@@ -85,7 +77,7 @@ class Ground:
 
 
 def stamp(pixels, canvas, ratio, robots, palette):
-    """Return a picture with what the lasers of robots have met as dots of their hues."""
+    """Return a picture of the laser points of robots as dots in their hues."""
     placed = [robot for robot in robots if robot.points is not None and len(robot.points)]
     result = np.ascontiguousarray(pixels).copy()
     if not placed:
@@ -106,7 +98,7 @@ def stamp(pixels, canvas, ratio, robots, palette):
 
 
 def paint_ground(painter, canvas, palette, grid, image):
-    """Paint what is known of the world, and lines of whole metres.
+    """Paint the map, and grid lines at whole metres.
 
     :param grid: the :class:`Grid`, None without a map
     :param image: its picture
@@ -129,7 +121,7 @@ def paint_ground(painter, canvas, palette, grid, image):
 
 
 def _paint_lines(painter, canvas, palette):
-    """Paint lines of whole metres; those of the origin are stronger."""
+    """Paint grid lines at whole metres; those through the origin are stronger."""
     step = round_step(_LINES_PX / canvas.px_per_m)
     reach = math.hypot(canvas.width, canvas.height) / 2.0 / canvas.px_per_m + step
     quiet, strong = (theme.blend(palette.color(QPalette.WindowText), palette.color(
@@ -144,15 +136,14 @@ def _paint_lines(painter, canvas, palette):
 
 
 def paint_fence(painter, canvas, palette, fence, closed=True):
-    """Paint the fence: dashed, in the colour of what holds a robot back."""
-    painter.setBrush(Qt.NoBrush)
-    painter.setPen(QPen(theme.colour(theme.ATTENTION, palette), 2.5, Qt.DashLine))
+    """Paint the fence: dashed, in the colour of everything that stops a robot."""
+    theme.set_ink(painter, QPen(theme.colour(theme.ATTENTION, palette), 2.5, Qt.DashLine))
     corners = QPolygonF([QPointF(*canvas.pixel(*corner)) for corner in fence])
     (painter.drawPolygon if closed else painter.drawPolyline)(corners)
 
 
 def trail_ink(number, grade, by_link, palette):
-    """Return the pen of a piece of trail; each grade has a stroke of its own by link."""
+    """Return the pen of a piece of trail; by link, each grade has its own line style."""
     if by_link:
         return QPen(theme.colour(_LINK_TONES[grade], palette), 2.6, _STROKES[grade])
     return QPen(theme.blend(hue_of(number, palette), palette.color(QPalette.Base), _FADES[grade]),
@@ -160,7 +151,7 @@ def trail_ink(number, grade, by_link, palette):
 
 
 def paint_trails(painter, canvas, palette, robots, by_link, now_s):
-    """Paint where robots have been."""
+    """Paint the trails of robots."""
     painter.setBrush(Qt.NoBrush)
     for robot in robots:
         if robot.trail is not None and robot.pose is not None:
@@ -174,8 +165,7 @@ def paint_arrow(painter, x_px, y_px, heading, length, ink, width=3.0):
     tip = QPointF(x_px + length * math.cos(heading), y_px - length * math.sin(heading))
     painter.setPen(QPen(ink, width, Qt.SolidLine, Qt.RoundCap))
     painter.drawLine(QPointF(x_px, y_px), tip)
-    painter.setPen(Qt.NoPen)
-    painter.setBrush(ink)
+    theme.set_ink(painter, brush=ink)
     side = max(9.0, 0.3 * length)
     painter.drawPolygon(QPolygonF([tip + 0.3 * (tip - QPointF(x_px, y_px)) / max(
         1.0, length) * side] + [tip - QPointF(side * math.cos(heading + turn), -side * math.sin(
@@ -183,16 +173,19 @@ def paint_arrow(painter, x_px, y_px, heading, length, ink, width=3.0):
 
 
 def paint_robot(painter, canvas, palette, robot, font):
-    """Paint a robot's footprint, heading, and its number in a disc; in a word what it does."""
+    """Paint a robot's footprint, heading, and number in its shape.
+
+    One whose place is old, or that is lost, is pale and dashed.
+    """
     x_px, y_px = canvas.pixel(robot.pose.x_m, robot.pose.y_m)
     middle, heading = QPointF(x_px, y_px), canvas.heading(robot.pose.heading_rad)
     hue = hue_of(robot.number, palette)
     base = palette.color(QPalette.Base)
     if robot.old:
         hue = theme.blend(hue, base, 0.55)
-    bold = theme.larger(font, 1.0, bold=True)
+    bold = theme.larger(font, theme.BODY, bold=True)
     metrics = QFontMetrics(bold)
-    disc = disc_px(metrics, robot.number)
+    disc = radius_px(metrics, robot.number)
     foot = robot.radius_m * canvas.px_per_m
     edge = _edge_ink(robot, palette)
     painter.setBrush(QColor(hue.red(), hue.green(), hue.blue(), 60))
@@ -202,71 +195,61 @@ def paint_robot(painter, canvas, palette, robot, font):
     reach = max(foot, disc) + (0 if foot > 1.9 * disc else 0.55 * disc)
     nose = [QPointF(x_px + far * math.cos(heading + turn), y_px - far * math.sin(heading + turn))
             for far, turn in ((reach + 4.0, 0.0), (disc * 0.95, 0.55), (disc * 0.95, -0.55))]
-    painter.setPen(QPen(base, 1.0))
-    painter.setBrush(hue)
+    theme.set_ink(painter, QPen(base, 1.0), hue)
     painter.drawPolygon(QPolygonF(nose))
     painter.setPen(QPen(base, 1.2))
-    painter.drawEllipse(middle, disc, disc)
+    paint_shape(painter, middle, disc, robot.number)
     painter.setFont(bold)
-    painter.setPen(theme.readable_on(hue))
-    painter.drawText(QRectF(x_px - 2 * disc, y_px - disc, 4 * disc, 2 * disc), int(Qt.AlignCenter),
-                     str(robot.number) if robot.number else robot.name[:2])
-    word = robot_word(robot)
-    if word:
-        below = y_px + max(foot, disc) + 3.0
-        paint_words(painter, x_px - metrics.horizontalAdvance(word) / 2.0, below + metrics.ascent(),
-                    word, bold, edge or theme.colour(theme.TEXT, palette), base)
+    paint_number(painter, middle, disc, str(robot.number) if robot.number else robot.name[:2], hue)
 
 
-def disc_px(metrics, number):
-    """Return the radius of the disc that a number is written in [px]."""
-    return 0.5 * max(1.35 * metrics.height(), metrics.horizontalAdvance(str(number)) + 12.0)
+def paint_labels(painter, canvas, palette, robots, font, large):
+    """Paint the label below each robot; a calm one only where it lies over no other label.
+
+    :param robots: in the order of painting: the last ones are the most important
+    :param large: whether the map is large; a small one only has labels of robots in trouble
+    """
+    bold, taken = theme.larger(font, theme.BODY, bold=True), []
+    metrics = QFontMetrics(bold)
+    for robot in sorted(reversed(robots), key=lambda robot: not robot.trouble):
+        word = robot_word(robot, large)
+        if not word or robot.pose is None:
+            continue
+        x_px, y_px = canvas.pixel(robot.pose.x_m, robot.pose.y_m)
+        below = y_px + 3.0 + max(robot.radius_m * canvas.px_per_m,
+                                 radius_px(metrics, robot.number))
+        wide = metrics.horizontalAdvance(word)
+        box = QRectF(x_px - wide / 2.0, below, wide, metrics.height())
+        if robot.trouble or not any(box.intersects(other) for other in taken):
+            taken.append(box)
+            paint_words(painter, box.left(), below + metrics.ascent(), word, bold, _edge_ink(
+                robot, palette) or theme.colour(theme.TEXT, palette), palette.color(QPalette.Base))
 
 
-def robot_word(robot):
-    """Return what is written below a robot: only what is not the rule."""
+def robot_word(robot, large=True):
+    """Return the label below a robot, which only names unusual states."""
     if robot.trouble:
-        return '{} {}'.format(robot.name, robot.trouble)
+        return '{} {}'.format(robot.name, robot.lost or robot.trouble)
+    if not large:
+        return ''
     if robot.driven or robot.looked_at or robot.selected:
         return '{} {}'.format(robot.name, robot.state)
     return robot.state if robot.task else ''
 
 
 def _edge_ink(robot, palette):
-    """Return the colour around a robot whose state is not the rule, else None."""
+    """Return the colour around a robot in an unusual state, else None."""
     if robot.trouble:
-        return theme.colour(theme.STOP if robot.trouble == GONE else theme.ATTENTION, palette)
+        return theme.colour(theme.STOP if robot.trouble == GONE or robot.lost else theme.ATTENTION,
+                            palette)
     if robot.task or robot.driven or robot.selected:
         return theme.colour(theme.TASK if robot.task else theme.DRIVE, palette)
     return theme.colour(theme.TEXT, palette) if robot.looked_at else None
 
 
 def paint_words(painter, x_px, y_px, text, font, ink, edge):
-    """Paint words with an edge, to be read on everything; (x, y) is where their line begins."""
-    image = _words_picture(text, font.toString(), ink.rgba(), edge.rgba(),
-                           painter.device().devicePixelRatioF())
+    """Paint outlined text, readable on any background; (x, y) is the start of the baseline."""
+    image = edged_words(text, font.toString(), ink.rgba(), edge.rgba(), 3.5, _EDGE_PX,
+                        painter.device().devicePixelRatioF())
     painter.drawImage(QPointF(round(x_px) - _EDGE_PX,
                               round(y_px) - _EDGE_PX - QFontMetrics(font).ascent()), image)
-
-
-# To paint an edge takes a millisecond, and the same words come ten times a second.
-@lru_cache(maxsize=300)
-def _words_picture(text, font_name, ink, edge, ratio):
-    """Return words with an edge as a picture."""
-    font = QFont()
-    font.fromString(font_name)
-    metrics = QFontMetrics(font)
-    width, height = (math.ceil(ratio * (size + 2 * _EDGE_PX)) for size in (
-        metrics.horizontalAdvance(text) + 2, metrics.height()))
-    image = QImage(width, height, QImage.Format_ARGB32_Premultiplied)
-    image.setDevicePixelRatio(ratio)
-    image.fill(Qt.transparent)
-    path = QPainterPath()
-    path.addText(QPointF(_EDGE_PX, _EDGE_PX + metrics.ascent()), font, text)
-    painter = QPainter(image)
-    painter.setRenderHint(QPainter.Antialiasing)
-    painter.setPen(QPen(QColor(edge), 3.5, Qt.SolidLine, Qt.RoundCap, Qt.RoundJoin))
-    painter.drawPath(path)
-    painter.fillPath(path, QColor(ink))
-    painter.end()
-    return image

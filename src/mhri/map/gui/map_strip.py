@@ -1,21 +1,22 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What lies over the map: the robots that are not on it, and the field for a mark's name."""
+"""Overlays of the map: the robots that are not placed, and the field for a mark's name."""
 from python_qt_binding.QtCore import QPoint, Qt, Signal
-from python_qt_binding.QtWidgets import (
-    QFrame, QHBoxLayout, QLineEdit, QPushButton, QVBoxLayout, QWidget)
+from python_qt_binding.QtWidgets import QFrame, QWidget
 
 from mhri.base.gui import theme
+from mhri.base.gui.controls import Button, LineField
 from mhri.base.gui.labels import TextLine
+from mhri.base.gui.layouts import in_column, in_row, TIGHT
 
-# So many robots have a line of their own.
-MOST_LINES = 4
+# Maximum number of robots with their own line.
+MAX_LINES = 4
 NOBODY_SAYS = 'Nobody says where robots are: the task service is not running.'
-MOST_NAME = 40
+MAX_NAME = 40
 
 
 class UnplacedStrip(QFrame):
-    """A button in words for each robot that is not on the map; a click places it.
+    """A text button for each robot that is not on the map; a click selects it for placing.
 
     Buttons are called ``unplaced_<robot>``.
     """
@@ -29,20 +30,17 @@ class UnplacedStrip(QFrame):
         self._build()
 
     def _build(self):
-        """Make room for the lines."""
+        """Make the layout."""
         self.setObjectName('unplaced')
-        self._column = QVBoxLayout(self)
-        self._column.setContentsMargins(0, 0, 0, 0)
-        self._column.setSpacing(3)
         self.note = TextLine(self)
         self.note.setAutoFillBackground(True)
-        self._column.addWidget(self.note)
+        self._column = in_column(self.note, of=self, margins=TIGHT, gap=4)
 
     def show_robots(self, robots, answers, large):
         """Show the robots of a scene that are not placed.
 
-        :param answers: whether anybody says where robots are
-        :param large: a line for each, or how many there are
+        :param answers: whether the task service reports places
+        :param large: one line each, else only their number
         """
         missing = [(robot.number, robot.name, robot.text) for robot in robots
                    if robot.pose is None]
@@ -54,7 +52,7 @@ class UnplacedStrip(QFrame):
             button = self._column.takeAt(1).widget()
             button.hide()
             button.deleteLater()
-        lines = missing[:MOST_LINES] if large and answers else []
+        lines = missing[:MAX_LINES] if large and answers else []
         for row in lines:
             self._column.addWidget(self._button(*row))
         more = len(missing) - len(lines)
@@ -70,17 +68,12 @@ class UnplacedStrip(QFrame):
         words = '{} {} is {}'.format(number or '', name, text).strip()
         if 'not placed' not in text:
             words = '{} {} is not on the map: {}'.format(number or '', name, text).strip()
-        button = QPushButton(words, self)
-        button.setObjectName('unplaced_' + name)
-        button.setFont(theme.base_font(self.font()))
-        button.setToolTip(words)
-        button.setFocusPolicy(Qt.TabFocus)
-        button.setMinimumHeight(theme.touch_size(self))
+        button = theme.for_fingers(Button(words, self), 'unplaced_' + name, tip=words)
         button.clicked.connect(lambda: self.chosen.emit(name))
         return button
 
     def fit(self, corner, width):
-        """Be at a corner, no wider than there is room."""
+        """Move to a corner, at most as wide as the available room."""
         buttons = [self._column.itemAt(index).widget() for index in range(1, self._column.count())]
         for button in buttons:
             whole, metrics = button.toolTip(), button.fontMetrics()
@@ -93,7 +86,7 @@ class UnplacedStrip(QFrame):
 
 
 class NameField(QFrame):
-    """Asks in place what a mark is called: Enter sets it, Escape drops it."""
+    """Field on the map for the name of a mark: Enter sets it, Escape discards it."""
 
     #: name, and its pose
     named = Signal(str, object)
@@ -111,18 +104,14 @@ class NameField(QFrame):
         self.setObjectName('mark_name')
         self.setFrameShape(QFrame.StyledPanel)
         self.setAutoFillBackground(True)
-        row = QHBoxLayout(self)
-        row.setContentsMargins(4, 4, 4, 4)
-        self.edit = QLineEdit(self)
-        self.edit.setObjectName('mark_edit')
-        self.edit.setPlaceholderText('name of the mark')
-        self.edit.setMaxLength(MOST_NAME)
-        self.set_button = QPushButton('Set', self)
-        self.drop_button = QPushButton('Cancel', self)
+        self.edit = LineField(self, objectName='mark_edit', placeholderText='name of the mark',
+                              maxLength=MAX_NAME)
+        self.set_button = Button('Set', self)
+        self.drop_button = Button('Cancel', self)
         for part in (self.edit, self.set_button, self.drop_button):
             part.setFont(theme.base_font(self.font()))
             part.setMinimumHeight(theme.touch_size(self))
-            row.addWidget(part)
+        in_row(self.edit, self.set_button, self.drop_button, of=self, margins=(4, 4, 4, 4))
         self.edit.setMinimumWidth(theme.text_width(self.edit.font(), 'name of the mark') + 20)
         self.hide()
 
@@ -133,13 +122,13 @@ class NameField(QFrame):
         self.drop_button.clicked.connect(self._drop)
 
     def ask(self, pose, pixel):
-        """Ask for the name of a mark.
+        """Prompt for the name of a mark.
 
-        :param pixel: (x, y) where it is on the map
+        :param pixel: (x, y) of the mark on the map
         """
         self._pose = pose
         self._count += 1
-        self.edit.setText('mark {}'.format(self._count))
+        self.edit.setText('mark_{}'.format(self._count))
         self.edit.selectAll()
         size, room = self.sizeHint(), self.parentWidget().rect()
         corner = QPoint(round(min(pixel[0] + 12, room.width() - size.width())),
@@ -158,7 +147,7 @@ class NameField(QFrame):
         self.cancelled.emit()
 
     def keyPressEvent(self, event):  # noqa: N802
-        """Drop it with Escape."""
+        """Discard the entry with Escape."""
         if event.key() == Qt.Key_Escape:
             self._drop()
         else:

@@ -1,9 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The map: a file of map_server that is published as ``/map``, or what somebody else publishes.
+"""The map: a file of map_server, published as ``/map``, or the one of another publisher.
 
 Interfaces: ``/map`` (``nav_msgs/OccupancyGrid``, latched; occupancy in [0, 100], -1 for unknown):
-published where a file is given, else subscribed.
+published if a file is given, else subscribed: by the tasks as bytes, by a screen while it shows
+the map.
 """
 import os
 
@@ -14,16 +15,33 @@ import rospy
 from rospy.numpy_msg import numpy_msg
 
 from mhri.base.config import ConfigError
-from mhri.base.mocap import Pose
+from mhri.base.geometry import Pose
 from mhri.graph.ros.messages import bytes_of
 from mhri.graph.ros.resources import read_text
+from mhri.graph.ros.stream import Stream
 from mhri.map.floor import Floor
 from mhri.map.grid import grid_of, GridError, picture_size, read_map, size_problem
-from mhri.robots.ros.convert import yaw_of
+from mhri.robots.ros.convert import turn_of, yaw_of
 
 TOPIC, FRAME = '/map', 'map'
-# numpy's bytes as they are: a map of 4 million cells as Python numbers takes a second.
+# Cells as a numpy array: a map of 4 million cells as Python numbers takes a second.
 GridMessage = numpy_msg(OccupancyGrid)
+
+
+def grid_of_message(message):
+    """Return the :class:`Grid` of a ``nav_msgs/OccupancyGrid``.
+
+    :raises GridError: it is invalid; the text names the problem
+    """
+    info, place = message.info, message.info.origin.position
+    return grid_of(info.resolution, Pose(place.x, place.y, yaw_of(info.origin.orientation)),
+                   info.width, info.height, message.data)
+
+
+def map_stream():
+    """Return the :class:`Stream` of the :class:`Grid` of ``/map``."""
+    return Stream([TOPIC], GridMessage, lambda message, note: grid_of_message(message),
+                  buff_size=2 ** 25)
 
 
 def load_map(path):
@@ -33,14 +51,14 @@ def load_map(path):
     :raises OSError: it cannot be read
     """
     def load_image(name):
-        """Return the picture; its path counts from the folder of the file."""
-        from mhri.base.opencv import cv2  # without a file, a start does not wait for it
+        """Return the picture; its path is relative to the folder of the file."""
+        from mhri.base.opencv import cv2  # imported late, only needed with a file
         image = os.path.join(os.path.dirname(os.path.abspath(path)), name)
         if not os.path.isfile(image):
             return None
         with open(image, 'rb') as file:
             size = picture_size(file.read(1000))
-        # Before it is unpacked, which takes half a minute and all the memory for a large one.
+        # Check the size before decoding: a large picture would take half a minute and all memory.
         problem = size and size_problem(1.0, Pose(0.0, 0.0, 0.0), *size)
         if problem:
             raise ConfigError(path, 'image', problem)
@@ -57,26 +75,22 @@ def grid_message(grid):
     info.map_load_time, info.resolution = message.header.stamp, grid.resolution_m
     info.height, info.width = grid.cells.shape
     info.origin.position.x, info.origin.position.y = origin.x_m, origin.y_m
-    info.origin.orientation = Quaternion(0.0, 0.0, *_half(origin.heading_rad))
+    info.origin.orientation = Quaternion(0.0, 0.0, *turn_of(origin.heading_rad))
     message.data = grid.cells.reshape(-1)
     return message
 
 
-def _half(heading_rad):
-    return numpy.sin(0.5 * heading_rad), numpy.cos(0.5 * heading_rad)
-
-
 def publish_map(grid):
-    """Publish a grid as ``/map``, latched; return the publisher, which has to be kept."""
+    """Publish a grid as ``/map``, latched; return the publisher, which the caller must keep."""
     publisher = rospy.Publisher(TOPIC, GridMessage, queue_size=1, latch=True)
     publisher.publish(grid_message(grid))
     return publisher
 
 
 class MapSource:
-    """The map in force.
+    """The current map.
 
-    :param grid: of a file, which is published; None: the one that somebody else publishes
+    :param grid: the grid of a file, to be published; None: that of another publisher
     """
 
     def __init__(self, grid=None):
@@ -84,19 +98,19 @@ class MapSource:
         self._bytes = None
         self._publisher = None
         self._floor_of = None
-        #: the :class:`Floor` of the newest map that was looked at, None before
+        #: the :class:`Floor` of the newest processed map, None before the first
         self.floor = None
 
     def start(self):
-        """Publish it, or listen to it (blocking: it asks the master)."""
+        """Publish the map, or subscribe to it (blocking: calls the master)."""
         if self._grid is not None:
             self._publisher = publish_map(self._grid)
         else:
-            rospy.Subscriber(TOPIC, bytes_of(OccupancyGrid), self._hear, queue_size=1,
+            rospy.Subscriber(TOPIC, bytes_of(OccupancyGrid), self._on_message, queue_size=1,
                              buff_size=1 << 24)
 
-    def _hear(self, message):
-        # Read when somebody asks for it: whoever makes a map publishes all of it again and again.
+    def _on_message(self, message):
+        # Parsed on request: mapping programs publish the whole map again and again.
         self._bytes = message._buff
 
     @property
@@ -105,24 +119,21 @@ class MapSource:
         return self._grid is not None or self._bytes is not None
 
     def grid(self):
-        """Return the newest :class:`Grid`, None where there is no map.
+        """Return the newest :class:`Grid`, None without a map.
 
-        :raises GridError: what is published is no map
+        :raises GridError: the published map is invalid
         """
         buff = self._bytes
         if self._grid is not None or buff is None:
             return self._grid
         try:
             message = OccupancyGrid().deserialize_numpy(buff, numpy)
-        except Exception as error:  # whatever bytes may lead genpy to
+        except Exception as error:  # genpy may raise anything for malformed bytes
             raise GridError('no map: {}'.format(error))
-        info, corner = message.info, message.info.origin
-        return grid_of(info.resolution, Pose(corner.position.x, corner.position.y,
-                                             yaw_of(corner.orientation)),
-                       info.width, info.height, message.data)
+        return grid_of_message(message)
 
     def look(self):
-        """Work out where the floor of a new map is free (a large one takes a while)."""
+        """Compute the free floor of a new map (slow for a large one)."""
         newest = self._grid or self._bytes
         if newest is self._floor_of:
             return

@@ -1,13 +1,13 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The one owner of where robots are placed, of marks and of the fence.
+"""The sole owner of the places of robots, the marks and the fence.
 
 Interfaces (global names; SI units):
 
 - publishes ``/mhri_tasks/places`` (``mhri/Places``, latched, on change at up to 10 Hz, and at 1 Hz)
 - subscribes ``/tf`` and ``/tf_static`` once a robot is known
-- keeps what was placed and drawn by hand in the parameter ``/mhri_tasks/kept``, since the node is
-  started again where it fails
+- keeps places and drawings made by hand in the parameter ``/mhri_tasks/kept``, for a restart of the
+  node after a failure
 
 The services are in :mod:`mhri.map.ros.place_services`.
 """
@@ -19,25 +19,26 @@ from geometry_msgs.msg import Point32, Pose2D
 import rospy
 
 from mhri.base.config import short
+from mhri.base.geometry import composed, inverse
 from mhri.map.drawn import Drawn, kept_of, read_kept
-from mhri.map.places import composed, Corrections, inverse, Place, RobotPlace, tf_problem
+from mhri.map.places import Corrections, Place, RobotPlace, tf_problem
 from mhri.msg import Mark, Place as PlaceMessage, Places
 from mhri.robots.ros.tf_feed import TfFeed
 
 TOPIC, KEPT = '/mhri_tasks/places', '/mhri_tasks/kept'
 MAP, WORLD = 'map', 'mhri_world'
-# Of the looks, which are 20 a second: tf and the message take every second one.
-TOLD_EVERY, TOLD_AT_LEAST_S = 2, 1.0
+# tf is read, and the message published, at every second update of 20 Hz.
+PUBLISH_EVERY, MAX_SILENCE_S = 2, 1.0
 NOWHERE = Place()
 
 
 class PlaceKeeper:
-    """The places of the robots that are seen, from any thread.
+    """The places of the sensed robots, for any thread.
 
-    :param seen: :class:`mhri.tasks.ros.seen_robots.SeenRobots`
-    :param map_source: its ``is_there`` tells whether there is a map
+    :param seen: :class:`mhri.tasks.ros.sensed_robots.SensedRobots`
+    :param map_source: its ``is_there`` is whether there is a map
     :param clock: seconds, monotonic
-    :param frames: :class:`TfFeed` that is opened here; None: one of its own
+    :param frames: :class:`TfFeed` that is opened here; None: create one
     """
 
     def __init__(self, seen, map_source, clock, frames=None):
@@ -52,18 +53,18 @@ class PlaceKeeper:
         self._settling = {}
         self._drawn = Drawn()
         self._looks = 0
-        self._told, self._told_at = None, -math.inf
+        self._published, self._published_at = None, -math.inf
         self._kept = None
         self._frame = WORLD
         self._publisher = None
 
     def start(self):
-        """Take up what was kept, and begin to publish (blocking: it asks the master)."""
+        """Restore the stored data, and start publishing (blocking: calls the master)."""
         self._publisher = rospy.Publisher(TOPIC, Places, queue_size=1, latch=True)
-        self._take_up(rospy.get_param(KEPT, None))
+        self._restore(rospy.get_param(KEPT, None))
         self._tf.open()
 
-    def _take_up(self, value):
+    def _restore(self, value):
         if value is None:
             return
         self._drawn, hand, errors = read_kept(value, KEPT)
@@ -77,7 +78,7 @@ class PlaceKeeper:
         return self._robots.setdefault(name, RobotPlace())
 
     def look(self):
-        """Take in what the robots have said, and publish it where it is time for that."""
+        """Process the newest data of the robots, and publish if due."""
         now, robots = self._clock(), self._seen.all()
         self._looks += 1
         frames = [robot.odometry_frame for robot in robots]
@@ -93,17 +94,17 @@ class PlaceKeeper:
                 self._corrections.pop(name, None)
                 if self._robots[name].hand is None:
                     del self._robots[name]
-            if self._looks % TOLD_EVERY == 0:
-                self._tell(now)
+            if self._looks % PUBLISH_EVERY == 0:
+                self._publish(now)
 
     def _look_at(self, robot, frames, now):
-        """Take in what one robot has said; called with the lock held."""
+        """Process the newest data of one robot; called with the lock held."""
         place = self._of(robot.name)
         if robot.odometry is not None and robot.odometry is not place.odometry:
             place.drive(robot.odometry)
         if robot.seen_at is not None and place.seen_at != robot.seen_at[1]:
             place.capture(*robot.seen_at)
-        if self._looks % TOLD_EVERY:
+        if self._looks % PUBLISH_EVERY:
             return
         problem = tf_problem(self._frame, robot.odometry_frame, frames)
         if problem:
@@ -111,13 +112,13 @@ class PlaceKeeper:
             return
         found = self._tf.find(self._frame, robot.odometry_frame)
         if found is not None:
-            place.see_tf(*found)
+            place.update_tf(*found)
         elif self._tf.knows(robot.odometry_frame):
-            place.see_tf(None, problem='tf does not lead from {} to {}'.format(
+            place.update_tf(None, problem='tf does not lead from {} to {}'.format(
                 self._frame, robot.odometry_frame[:60]))
 
-    def _tell(self, now):
-        """Publish where something has changed, and once a second."""
+    def _publish(self, now):
+        """Publish on a change, and once a second."""
         self._frame = MAP if self._map.is_there or self._tf.knows(MAP) else WORLD
         message = Places(robots=[_place_message(name, place)
                                  for name, place in sorted(self._places.items())],
@@ -125,15 +126,15 @@ class PlaceKeeper:
                                 for name, pose in sorted(self._drawn.marks.items())],
                          fence=[Point32(x, y, 0.0) for x, y in self._drawn.fence])
         message.header.frame_id = self._frame
-        told = (self._frame, [_shown(place) for place in message.robots], message.marks,
-                message.fence)
-        if told != self._told or now - self._told_at >= TOLD_AT_LEAST_S:
-            self._told, self._told_at = told, now
+        shown = (self._frame, [_shown(place) for place in message.robots], message.marks,
+                 message.fence)
+        if shown != self._published or now - self._published_at >= MAX_SILENCE_S:
+            self._published, self._published_at = shown, now
             message.header.stamp = rospy.Time.now()
             self._publisher.publish(message)
 
     def keep(self):
-        """Write what was placed and drawn by hand to the master, where that has changed."""
+        """Store places and drawings made by hand at the master, if they have changed."""
         with self._lock:
             hand = {name: (robot.hand, robot.odometry.pose, time.time() - (
                 self._clock() - robot.odometry.at_s)) for name, robot in self._robots.items()
@@ -145,15 +146,15 @@ class PlaceKeeper:
         rospy.set_param(KEPT, kept)
 
     def place(self, name):
-        """Return the :class:`Place` of a robot as of the last look."""
+        """Return the :class:`Place` of a robot as of the last update."""
         return self._places.get(name, NOWHERE)
 
     def settling(self, name):
-        """Return in words that a robot's place was just corrected by far, '' where it was not."""
+        """Describe a large correction of a robot's place just now, '' without one."""
         return self._settling.get(name, '')
 
     def fence(self):
-        """Return the corners (x, y) [m] of the fence, () for none."""
+        """Return the corners (x, y) [m] of the fence, () without one."""
         return self._drawn.fence
 
     def marks(self):
@@ -161,13 +162,13 @@ class PlaceKeeper:
         return dict(self._drawn.marks)
 
     def mark(self, name):
-        """Return the :class:`Pose` of a mark, None where there is none."""
+        """Return the :class:`Pose` of a mark, None if it does not exist."""
         return self._drawn.marks.get(name)
 
     def put(self, name, pose, odometry=None):
-        """Place a robot by hand; return why that cannot be, '' if it is done.
+        """Place a robot by hand; return why that is impossible, '' on success.
 
-        :param odometry: the odometry :class:`Pose` that belongs to the pose, None: the newest
+        :param odometry: the matching odometry :class:`Pose`, None: the newest
         """
         with self._lock:
             place = self._of(name)
@@ -176,12 +177,12 @@ class PlaceKeeper:
             return place.put(pose, self._clock())
 
     def take_back(self, name):
-        """Forget where a robot was placed by hand."""
+        """Forget the place of a robot set by hand."""
         with self._lock:
             self._of(name).take_back()
 
     def draw(self, change):
-        """Let a function change the :class:`Drawn`; return what it returns."""
+        """Apply a function to the :class:`Drawn`; return its result."""
         with self._lock:
             return change(self._drawn)
 
@@ -197,7 +198,7 @@ def _place_message(name, place):
 
 
 def _shown(place):
-    """Return what of a place is a change: not its age, nor what is less than a millimetre."""
+    """Return a place for comparison: without its age, rounded to 1 mm."""
     origin = place.odometry
     return (place.robot, place.by, place.text,
             [str(round(number, 3)) for number in (origin.x, origin.y, origin.theta)])

@@ -1,15 +1,15 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The services that place robots by hand and draw on the map.
+"""The services to place robots by hand and to draw on the map.
 
 Interfaces: serves ``/mhri_tasks/set_place``, ``/mhri_tasks/fit_place``, ``/mhri_tasks/set_fence``
-and ``/mhri_tasks/set_mark``; each answers what cannot be done in a sentence.
+and ``/mhri_tasks/set_mark``; each explains a refusal in a sentence.
 """
 import threading
 
 import rospy
 
-from mhri.base.mocap import Pose
+from mhri.base.geometry import Pose
 from mhri.graph.ros.master_api import MasterError
 from mhri.map.drawn import pose_problem
 from mhri.map.fit import fit, FitError, NO_POINTS
@@ -20,20 +20,20 @@ from mhri.srv import (
     FitPlace, FitPlaceResponse, SetFence, SetFenceResponse, SetMark, SetMarkResponse, SetPlace,
     SetPlaceResponse)
 
-# A laser that is opened for this has so long to be heard [s].
+# Timeout for the first scan of a laser that is subscribed for a fit [s].
 SCAN_WITHIN_S = 2.0
-# A robot that turns or goes by more while it is fitted does not stand [m or rad].
+# A robot that moves or turns by more during a fit is not at rest [m or rad].
 STANDS_WITHIN = 0.02
 
 
 class PlaceServices:
-    """Serves them, each call on a thread of its own.
+    """Serves these services, each call on its own thread.
 
-    :param seen: :class:`mhri.tasks.ros.seen_robots.SeenRobots`
+    :param seen: :class:`mhri.tasks.ros.sensed_robots.SensedRobots`
     :param keeper: :class:`mhri.map.ros.place_keeper.PlaceKeeper`
     :param map_source: :class:`mhri.map.ros.map_source.MapSource`
     :param is_busy: function from a robot's name: whether it is on a task
-    :param worker: does what asks the master
+    :param worker: runs calls to the master
     """
 
     def __init__(self, seen, keeper, map_source, is_busy, worker):
@@ -46,7 +46,7 @@ class PlaceServices:
         self._patience = threading.Event()
 
     def start(self):
-        """Begin to serve (blocking: it asks the master)."""
+        """Start the services (blocking: calls the master)."""
         for name, kind, handler in (('set_place', SetPlace, self._set_place),
                                     ('fit_place', FitPlace, self._fit_place),
                                     ('set_fence', SetFence, self._set_fence),
@@ -54,7 +54,7 @@ class PlaceServices:
             rospy.Service('/mhri_tasks/' + name, kind, handler)
 
     def _answer(self, response, problem, done):
-        """Return a response, and have kept what was done."""
+        """Return a response, and store the change."""
         if not problem:
             self._worker.do(self._keeper.keep)
         return response(not problem, problem or done)
@@ -109,7 +109,7 @@ class PlaceServices:
             self._fitting.release()
 
     def _fit_problem(self, request):
-        """Return why a robot cannot be fitted, '' if that can be tried."""
+        """Return why a robot cannot be fitted, '' if it can be tried."""
         place = self._keeper.place(request.robot)
         if place.by != HAND:
             return '{} has to be placed by hand first: it is {}'.format(
@@ -130,7 +130,7 @@ class PlaceServices:
         odometry, points = self._points(name)
         rough = self._keeper.place(name).pose(odometry)
         if other:
-            # As seen by the other, in the frame of the map.
+            # From the other robot, in the frame of the map.
             pose, around = self._points(other)
             place = self._keeper.place(other).pose(pose)
             if rough is None or place is None:
@@ -139,14 +139,14 @@ class PlaceServices:
         else:
             found = fit(points, rough, grid=self._map.grid())
         if not _stands(odometry, self._seen.get(name).pose):
-            raise FitError('it moves: let it stand')
+            raise FitError('it is moving: stop it first')
         problem = self._named(name, self._keeper.put(name, found.pose, odometry))
         return self._answer(FitPlaceResponse, problem, '{}: {}'.format(name, found.text))
 
     def _points(self, name):
-        """Return (its odometry, what its laser has met), once that is heard.
+        """Return (odometry pose, laser points) of a robot, once received.
 
-        :raises FitError: its laser says nothing
+        :raises FitError: its laser publishes nothing
         """
         robot = self._seen.get(name)
         for _ in range(int(SCAN_WITHIN_S / 0.05)):

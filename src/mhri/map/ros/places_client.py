@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The map's side of mhri_tasks: where robots are placed, marks, fence, tasks under way.
+"""Client of mhri_tasks for the map: places of robots, marks, fence, running tasks.
 
 Subscribes ``/mhri_tasks/places`` (``mhri/Places``) and ``/mhri_tasks/list`` (``mhri/TaskList``); it
-believes only the node that serves ``/mhri_tasks/set_place``. Calls that, ``/mhri_tasks/fit_place``,
-``/mhri_tasks/set_fence`` and ``/mhri_tasks/set_mark`` on a thread of its own.
+accepts only the node that serves ``/mhri_tasks/set_place``. Calls that, ``/mhri_tasks/fit_place``,
+``/mhri_tasks/set_fence`` and ``/mhri_tasks/set_mark`` on its own thread.
 """
 from dataclasses import replace
 import math
@@ -12,23 +12,23 @@ import time
 
 from geometry_msgs.msg import Point32, Pose2D
 
-from mhri.base.mocap import Pose
+from mhri.base.geometry import Pose
 from mhri.base.text import tidy_text
 from mhri.graph.ros.node_client import NodeClient
 from mhri.map.scene import MapMark, PlacesView, Placing, UnderWay
 from mhri.msg import Places, TaskList
 from mhri.srv import FitPlace, SetFence, SetMark, SetPlace
 
-# It speaks at 1 Hz: a word later than this is not coming [s].
+# mhri_tasks publishes at 1 Hz: it counts as silent after this time without a message [s].
 SILENT_S = 2.5
-# A call waits so long for the service; a fit takes its time [s].
+# Timeout of a call; a fit takes a while [s].
 CALL_S = 1.0
 _PLACE = '/mhri_tasks/set_place'
 _LONGEST = 300
 
 
 def _pose(message):
-    """Return a ``geometry_msgs/Pose2D`` as a pose, None where a number is missing."""
+    """Return a ``geometry_msgs/Pose2D`` as a pose, None if a number is missing."""
     pose = Pose(message.x, message.y, message.theta)
     return pose if pose.is_finite() else None
 
@@ -39,7 +39,7 @@ def _placing(message):
 
 
 def places_view(message):
-    """Return a ``mhri/Places`` as a value; what is not finite is left out."""
+    """Return a ``mhri/Places`` as a value, without entries that are not finite."""
     marks = [(mark.name, _pose(mark.pose)) for mark in message.marks]
     return PlacesView(
         tidy_text(message.header.frame_id, _LONGEST),
@@ -50,9 +50,9 @@ def places_view(message):
 
 
 class PlacesClient:
-    """What mhri_tasks says of the map, and requests to it; all but :meth:`open` returns at once.
+    """The state of mhri_tasks for the map, and requests to it; only :meth:`open` blocks.
 
-    Answers are told by ``on_answer(done, sentence)``, on the worker.
+    Answers come by ``on_answer(done, sentence)``, on the worker.
 
     :param clock: function that returns seconds, monotonic
     """
@@ -65,7 +65,7 @@ class PlacesClient:
         self._node = NodeClient('map_calls', _PLACE, CALL_S)
 
     def open(self):
-        """Listen from now on (blocking: it asks the master)."""
+        """Subscribe (blocking: calls the master)."""
         if not self._opened:
             self._opened = True
             self._node.subscribe('/mhri_tasks/places', Places, self._on_places)
@@ -80,7 +80,7 @@ class PlacesClient:
             robot.robot for robot in run.robots)) for run in message.runs)
 
     def view(self):
-        """Return the :class:`PlacesView` of this moment; ages go on while nothing is heard."""
+        """Return the present :class:`PlacesView`; ages grow while no message comes."""
         view, heard_at = self._places
         passed_s = self._clock() - heard_at
         if passed_s == math.inf:
@@ -90,24 +90,24 @@ class PlacesClient:
         return replace(view, robots=robots, answers=passed_s <= SILENT_S)
 
     def runs(self):
-        """Return the tasks that are under way, :class:`UnderWay` values."""
+        """Return the running tasks, :class:`UnderWay` values."""
         return self._runs if self.view().answers else ()
 
     def set_place(self, robot, pose, on_answer):
-        """Place a robot by hand; ``pose`` None takes that back."""
+        """Place a robot by hand; ``pose`` None undoes that."""
         self._do(on_answer, _PLACE, SetPlace, robot, pose is not None, _message(pose))
 
     def fit_place(self, robot, other, on_answer):
-        """Align what a robot's laser sees with the map ('') or with that of another robot."""
+        """Align a robot's scan with the map ('') or with the scan of another robot."""
         self._do(on_answer, '/mhri_tasks/fit_place', FitPlace, robot, other)
 
     def set_fence(self, corners, on_answer):
-        """Draw the fence; no corners: take it away."""
+        """Draw the fence; no corners: remove it."""
         self._do(on_answer, '/mhri_tasks/set_fence', SetFence,
                  [Point32(x, y, 0.0) for x, y in corners])
 
     def set_mark(self, name, pose, on_answer):
-        """Put a mark there; ``pose`` None takes it away."""
+        """Set a mark; ``pose`` None removes it."""
         self._do(on_answer, '/mhri_tasks/set_mark', SetMark, name, pose is not None,
                  _message(pose))
 
@@ -120,7 +120,7 @@ class PlacesClient:
         self._node.request(answered, name, kind, *words)
 
     def close(self, forget=False):
-        """End; returns at once. ``forget``: unregister every topic as well, in the background."""
+        """Close without blocking; ``forget``: unregister every topic as well, in the background."""
         self._node.close(forget)
 
 

@@ -1,48 +1,36 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Save IMU Data: whether, where, what besides, and how the recording does."""
+"""Save IMU Data: switch, path, extra topics, and the state of the recording."""
 import os
 
-from python_qt_binding.QtCore import QEvent, Qt, QTimer, Signal
-from python_qt_binding.QtWidgets import (
-    QApplication, QFileDialog, QHBoxLayout, QLineEdit, QMenu, QPushButton, QVBoxLayout,
-    QWidget)
+from python_qt_binding.QtCore import QEvent, Qt, Signal
+from python_qt_binding.QtWidgets import QApplication, QFileDialog, QMenu, QWidget
 
 from mhri.base.gui import theme
+from mhri.base.gui.controls import Button, LineField
 from mhri.base.gui.flow import FlowLayout, let_height_follow
 from mhri.base.gui.labels import Sign, TextLine
+from mhri.base.gui.layouts import add_parts, in_column, in_row, TIGHT
 from mhri.base.gui.pending import Pace, Pending
 from mhri.base.gui.switches import SwitchBox
-from mhri.recording.recording import CHOICES, ENDED, FAILED, read_fallback, RECORDING, size_text
+from mhri.recording.recording import (
+    CHOICES, duration_text, ENDED, FAILED, RECORDING, size_text)
 
-NUMBERS_PERIOD_S = 0.25
 _ANSWER_WITHIN_S = 3.0
 
 
-def clock_text(duration_s):
-    """Return a duration as "00:12", from an hour on as "1:00:12"."""
-    minutes, seconds = divmod(int(duration_s), 60)
-    hours, minutes = divmod(minutes, 60)
-    return '{}:{:02d}:{:02d}'.format(hours, minutes, seconds) if hours else \
-        '{:02d}:{:02d}'.format(minutes, seconds)
-
-
 def recording_text(status):
-    """Return a :class:`RecordingStatus` as a line; '' where all is off."""
-    reason, rest = read_fallback(status.note)
+    """Return a :class:`RecordingStatus` as a line; '' if nothing is recorded."""
     if status.state == RECORDING:
         figures = 'recording {}   {:,} messages   {}   {:.0f} Hz'.format(
-            clock_text(status.duration_s), status.messages, size_text(status.bytes),
+            duration_text(status.duration_s), status.messages, size_text(status.bytes),
             status.rate_hz)
-        notes = (rest.strip('; '), 'saving elsewhere, {}'.format(reason) if reason else '')
-        return '   '.join(filter(None, (figures, *notes)))
-    if reason and status.state == ENDED:
-        return rest.replace('saved ', 'saved elsewhere, {}: '.format(reason), 1)
-    return status.note
+        return '   '.join(filter(None, (figures, status.words)))
+    return status.words
 
 
 def shorter_text(status):
-    """Return fewer words for :func:`recording_text`: a saved file without its folder."""
+    """Return a shorter :func:`recording_text`: a saved file without its folder."""
     text = recording_text(status)
     if status.state != ENDED:
         return ()
@@ -50,7 +38,7 @@ def shorter_text(status):
 
 
 class StayingMenu(QMenu):
-    """A menu that stays open while its entries are ticked, until Escape or a click beside it."""
+    """A menu that stays open while entries are ticked, until Escape or a click outside it."""
 
     def mouseReleaseEvent(self, event):  # noqa: N802
         """Tick the entry under the pointer."""
@@ -58,14 +46,14 @@ class StayingMenu(QMenu):
             super().mouseReleaseEvent(event)
 
     def keyPressEvent(self, event):  # noqa: N802
-        """Tick the entry that is chosen."""
+        """Tick the selected entry."""
         ticks = event.key() in (Qt.Key_Space, Qt.Key_Return, Qt.Key_Enter)
         if not (ticks and self._tick(self.activeAction())):
             super().keyPressEvent(event)
 
     @staticmethod
     def _tick(action):
-        """Tick or untick an entry; return whether there is one for it."""
+        """Tick or untick an entry; return whether it could be ticked."""
         if action is None or not (action.isCheckable() and action.isEnabled()):
             return False
         action.trigger()
@@ -73,7 +61,7 @@ class StayingMenu(QMenu):
 
 
 class RecordingRow(QWidget):
-    """Asks for a recording and shows the one there is; nothing is opened or written here.
+    """Requests recordings and shows the present one; opens and writes no file itself.
 
     Child widgets: ``record_check``, ``path_edit``, ``browse_button``, ``extras_button``,
     ``recording_label``.
@@ -90,19 +78,19 @@ class RecordingRow(QWidget):
         self._typed = ''
         self._default_path = ''
         self._dialog = None
-        self._asked = Pending(_ANSWER_WITHIN_S)
-        self._numbers = Pace(NUMBERS_PERIOD_S)
+        self._asked = Pending(_ANSWER_WITHIN_S, self._show_checked)
+        self._numbers = Pace()
         self._build()
         self._connect()
         self._restore()
 
     def _build(self):
-        """Make and place the parts."""
+        """Make and place the widgets."""
         self.record_check = SwitchBox('Save IMU Data', self)
-        self.path_edit = QLineEdit(self)
+        self.path_edit = LineField(self)
         self.path_edit.installEventFilter(self)
-        self.browse_button = QPushButton('Browse', self)
-        self.extras_button = QPushButton(self)
+        self.browse_button = Button('Browse', self)
+        self.extras_button = Button(self)
         self.extras_menu = StayingMenu(self.extras_button)
         self.extras = {}
         for key, label in CHOICES:
@@ -112,10 +100,6 @@ class RecordingRow(QWidget):
         self.recording_sign = Sign(self)
         self.recording_label = TextLine(self)
         self.recording_label.setFont(theme.number_font(self.font()))
-        self._answer = QTimer(self)
-        self._answer.setSingleShot(True)
-        self._answer.setTimerType(Qt.PreciseTimer)
-        self._answer.setInterval(round(_ANSWER_WITHIN_S * 1000) + 20)
         for name, spoken in (('record_check', 'save IMU data'),
                              ('path_edit', 'file to save to; empty: the default'),
                              ('browse_button', 'choose the file to save to'),
@@ -126,7 +110,6 @@ class RecordingRow(QWidget):
             part.setAccessibleName(spoken)
             part.setMinimumHeight(0 if part is self.recording_label else theme.touch_size(self))
         for button in (self.browse_button, self.extras_button):
-            button.setAutoDefault(False)
             button.setFocusPolicy(Qt.TabFocus)
         self.extras_button.setMinimumWidth(
             theme.text_width(self.font(), 'IMU + 5') + 2 * self.fontMetrics().height())
@@ -134,51 +117,42 @@ class RecordingRow(QWidget):
 
     def _lay_out(self):
         """Place the parts on two lines."""
-        first, second = FlowLayout(), QHBoxLayout()
-        for widget in (self.record_check, self.path_edit, self.browse_button, self.extras_button):
-            first.addWidget(widget)
-        second.setSpacing(6)
-        second.addWidget(self.recording_sign)
-        second.addWidget(self.recording_label, 1)
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.setSpacing(2)
-        column.addLayout(first)
-        column.addLayout(second)
+        first, second = FlowLayout(), in_row(self.recording_sign, (self.recording_label, 1), gap=8)
+        add_parts(first, self.record_check, self.path_edit, self.browse_button, self.extras_button)
+        in_column(first, second, of=self, margins=TIGHT, gap=4)
         let_height_follow(self)
 
     def _connect(self):
-        """Wire the controls."""
+        """Connect the controls."""
         self.record_check.clicked.connect(self._on_click)
         self.path_edit.returnPressed.connect(self._leave_path)
         self.browse_button.clicked.connect(self._browse)
         self.extras_menu.triggered.connect(self._show_extras)
-        self._answer.timeout.connect(self._show_checked)
 
     def _restore(self):
-        """Begin without a recording."""
+        """Set the initial state, without a recording."""
         self.set_default_path('')
         self._show_extras()
         self._show_checked()
 
     @property
     def path(self):
-        """The path asked for, '' for the default."""
+        """The requested path, '' for the default."""
         return self._typed if self._recording else self.path_edit.text().strip()
 
     def chosen_extras(self):
-        """Return the keys of what shall be recorded besides the IMU, in the order of CHOICES."""
+        """Return the keys of the extras to record besides the IMU, in the order of CHOICES."""
         return tuple(key for key, action in self.extras.items()
                      if action.isChecked() and action.isVisible())
 
     def offer_extras(self, keys):
-        """Offer what the robot has; what is not among these is neither shown nor recorded."""
+        """Offer only these extras; others are neither shown nor recorded."""
         for key, action in self.extras.items():
             action.setVisible(key in keys)
         self._show_extras()
 
     def set_default_path(self, path):
-        """Show in an empty field where the data will go, e.g. "~/.ros/bot1_<date-time>.bag"."""
+        """Show the default path in an empty field, e.g. "~/.ros/bot1_<date-time>.bag"."""
         self._default_path = path or '~/.ros/'
         self.path_edit.setPlaceholderText(path or 'a new file in ~/.ros')
 
@@ -197,7 +171,7 @@ class RecordingRow(QWidget):
             self._show_line(status)
 
     def _lock_path(self, locked):
-        """Keep what was typed while a recording has its own path, and bring it back afterwards."""
+        """Keep the typed text while a recording shows its own path, and restore it afterwards."""
         if locked:
             self._typed = self.path_edit.text().strip()
         else:
@@ -209,21 +183,20 @@ class RecordingRow(QWidget):
     def _show_line(self, status):
         """Show state, figures and note."""
         signs = {RECORDING: (theme.DISC, theme.DRIVE), ENDED: (theme.TICK, theme.LIVE),
-                 FAILED: (theme.TRIANGLE, theme.ATTENTION)}
-        # Saved, but not where it was asked for, is no success.
-        fault = status.attention or read_fallback(status.note)[0]
-        self.recording_sign.show_sign((theme.TRIANGLE, theme.ATTENTION) if fault
+                 FAILED: theme.WARNING}
+        # A file saved elsewhere than requested counts as a fault.
+        fault = status.attention or status.elsewhere
+        self.recording_sign.show_sign(theme.WARNING if fault
                                       else signs.get(status.state))
         self.recording_label.show_text(recording_text(status), shorter=shorter_text(status))
 
     def _show_checked(self):
-        """Show in the box what is asked for, then what is."""
+        """Show the requested state in the box, then the actual one."""
         self.record_check.setChecked(self._asked.settle(self._recording))
 
     def _on_click(self, checked):
-        """Ask for a recording or its end."""
+        """Request to start or stop a recording."""
         self._asked.ask(checked)
-        self._answer.start()
         if checked:
             self._leave_path()
             self.record_requested.emit(self.path, self.chosen_extras())
@@ -231,14 +204,14 @@ class RecordingRow(QWidget):
             self.stop_record_requested.emit()
 
     def _show_extras(self, *_):
-        """Say in the button how much is recorded."""
+        """Show the number of chosen extras on the button."""
         extras = self.chosen_extras()
         self.extras_button.setText('IMU + {}'.format(len(extras)) if extras else 'IMU only')
         self.extras_button.setToolTip('saved: IMU' + ''.join(
             ', ' + self.extras[key].text().lower() for key in extras))
 
     def _leave_path(self):
-        """Give the keyboard back, so that the keys drive again."""
+        """Release the keyboard focus, so that the keys drive again."""
         if self.path_edit.hasFocus():
             self.window().setFocus()
 
@@ -251,9 +224,9 @@ class RecordingRow(QWidget):
         return super().eventFilter(watched, event)
 
     def _browse(self):
-        """Open a file dialog that blocks nothing; a second click brings it to the front."""
+        """Open a non-modal file dialog; a second click brings it to the front."""
         if self._dialog is None:
-            # No child of this window: its lists want their letters and arrows, which drive here.
+            # Not a child of this window, whose letters and arrows drive: its lists need those keys.
             folder = os.path.dirname(os.path.expanduser(self._default_path))
             self._dialog = QFileDialog(None, 'Save IMU data', folder, 'Bags (*.bag)')
             self._dialog.setFont(self.font())
@@ -273,11 +246,11 @@ class RecordingRow(QWidget):
         self._dialog.activateWindow()
 
     def _forget_dialog(self, *_):
-        """Take note that the dialog is gone, as at the end of the program."""
+        """Drop the reference to a deleted dialog, e.g. at the end of the program."""
         self._dialog = None
 
     def _place_dialog(self):
-        """Put the dialog above this row: what is below it, the stop button, stays in sight."""
+        """Place the dialog above this row, so that the stop button below stays visible."""
         self._dialog.winId()
         handle = self.window().windowHandle()
         if handle is not None:
@@ -292,17 +265,17 @@ class RecordingRow(QWidget):
         self._dialog.move(left, max(screen.top(), row_top.y() - height - 40))
 
     def hideEvent(self, event):  # noqa: N802
-        """Take the dialog along."""
+        """Hide the dialog, too."""
         super().hideEvent(event)
         if self._dialog is not None:
             self._dialog.hide()
 
     def save_settings(self):
-        """Return what to record as a plain dict; a path is meant for one recording."""
+        """Return the extras as a plain dict; a path is valid for one recording only."""
         return {'extras': [key for key, action in self.extras.items() if action.isChecked()]}
 
     def restore_settings(self, settings):
-        """Take over a dict of :meth:`save_settings`."""
+        """Restore a dict of :meth:`save_settings`."""
         for key, action in self.extras.items():
             action.setChecked(key in settings.get('extras', ()))
         self._show_extras()

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A bag on the disk: made if missing, written chunk by chunk, closed whole."""
+"""A bag on the disk: created if missing, written chunk by chunk, closed with its index."""
 import errno
 import io
 import itertools
@@ -13,7 +13,7 @@ import genpy
 import rosbag
 
 from mhri.recording.recording import (
-    ACTIVE, default_name, fallback_note, numbered, PathRefused, ros_home, split_path, system_folder)
+    ACTIVE, default_name, numbered, PathRefused, ros_home, split_path, system_folder)
 
 _WORDS = {errno.EACCES: 'no permission', errno.EPERM: 'no permission',
           errno.EROFS: 'that disk is read-only', errno.ENOSPC: 'the disk is full',
@@ -22,13 +22,13 @@ _WORDS = {errno.EACCES: 'no permission', errno.EPERM: 'no permission',
           errno.EEXIST: 'a part of it is a file', errno.EFBIG: 'the file is too large for it',
           errno.EIO: 'the disk does not answer'}
 
-# The longest path on Linux (PATH_MAX) less room for a name; checked before anything is made.
-_LONGEST_PATH = 4096 - 256
+# The longest path on Linux (PATH_MAX) less room for a name; checked before anything is created.
+_MAX_PATH = 4096 - 256
 _NS = 10 ** 9
 
 
-def words_of(error):
-    """Return why a path or a disk failed, in words for the operator."""
+def error_text(error):
+    """Return the error of a path or a disk as words for the operator."""
     if isinstance(error, OSError):
         return _WORDS.get(error.errno) or (error.strerror or str(error)).lower()
     if isinstance(error, ValueError) and not isinstance(error, PathRefused):
@@ -37,14 +37,14 @@ def words_of(error):
 
 
 class Publisher(str):
-    """The topic of one publisher, equal to no other's.
+    """The topic of one publisher, different from the same topic of any other publisher.
 
-    ``rosbag.Bag`` keeps one connection per topic. Given this as the topic, it keeps a connection
+    ``rosbag.Bag`` keeps one connection per topic. With this as the topic, it keeps a connection
     and a header for each publisher, as ``rosbag record`` does: publishers may differ in caller,
     latching and even type.
 
-    :param fields: {name: text} as it introduced itself; ``topic``, ``type``, ``md5sum`` and
-        ``message_definition`` must be among them
+    :param fields: {name: text} of its connection header; must include ``topic``, ``type``,
+        ``md5sum`` and ``message_definition``
     """
 
     __eq__ = object.__eq__
@@ -52,10 +52,10 @@ class Publisher(str):
     __hash__ = object.__hash__
 
     def __new__(cls, fields):
-        """Take the topic's name."""
+        """Make the string from the topic's name."""
         self = super().__new__(cls, fields['topic'])
         self.fields = fields
-        # What the library wants of a message class, which need not be installed here.
+        # The attributes of a message class that the library needs; it may not be installed here.
         self.kind = SimpleNamespace(_md5sum=fields['md5sum'],
                                     _full_text=fields['message_definition'])
         return self
@@ -64,8 +64,8 @@ class Publisher(str):
 class _Tail(io.BytesIO):
     """A file whose tail stays in memory until it is saved, all or nothing.
 
-    ``rosbag.Bag`` writes a chunk piece by piece and then goes back to its header: written straight
-    to disk, a killed program would leave a chunk without a size, a full disk half a chunk.
+    ``rosbag.Bag`` writes a chunk piece by piece and then goes back to its header: if it wrote
+    straight to disk, a killed program would leave a chunk without a size, a full disk half a chunk.
 
     :param file_descriptor: of an empty file; closed with this
     ``saved`` is the length of the file on the disk.
@@ -86,7 +86,7 @@ class _Tail(io.BytesIO):
     def seek(self, offset, whence=os.SEEK_SET):
         """Go to a position; save the tail first if the position is already on the disk.
 
-        :raises OSError: as :meth:`save`
+        :raises OSError: see :meth:`save`
         """
         if whence == os.SEEK_SET:
             if offset < self._base:
@@ -112,7 +112,7 @@ class _Tail(io.BytesIO):
         self._forget()
 
     def cut(self, length):
-        """Discard the tail in memory, and cut the file to a length."""
+        """Discard the tail in memory, and truncate the file to a length."""
         self._forget()
         os.ftruncate(self._fd, length)
         self._base = self.saved = length
@@ -139,12 +139,11 @@ class _Tail(io.BytesIO):
 class BagFile:
     """A rosbag 2.0 file called ``<path>.active`` until it is closed. Not thread-safe.
 
-    Written by ``rosbag.Bag``. The only access beneath its public interface is to its lists of
-    chunks (to give up the newest if the disk has no room) and of messages (kept for readers,
-    endless).
+    Written by ``rosbag.Bag``. The only private attributes used are its lists of chunks (to drop the
+    newest if the disk is full) and of messages (kept for readers, and growing without limit).
 
-    :param path: its final name; ``path.active`` is made and must not exist
-    :raises OSError: it cannot be made or written
+    :param path: its final name; ``path.active`` is created and must not exist
+    :raises OSError: it cannot be created or written
     """
 
     def __init__(self, path):
@@ -153,7 +152,7 @@ class BagFile:
         self._fd = os.open(self._active, os.O_RDWR | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC, 0o666)
         self._tail = _Tail(self._fd)
         try:
-            # Chunks end only where write() says.
+            # Only write() ends chunks.
             self._bag = rosbag.Bag(self._tail, 'w', chunk_threshold=sys.maxsize)
             self._tail.save()
         except OSError:
@@ -163,7 +162,7 @@ class BagFile:
 
     @property
     def size(self):
-        """The bytes written."""
+        """The number of bytes written."""
         return self._tail.saved
 
     @property
@@ -176,7 +175,7 @@ class BagFile:
 
         :param messages: (:class:`Publisher`, receipt time [ns], frame: the length (4 bytes) and
             bytes of a serialised message), at least one
-        :raises OSError: the file is as it was before
+        :raises OSError: the write failed; the file is unchanged
         """
         for publisher, time_ns, frame in messages:
             fields = publisher.fields
@@ -192,14 +191,14 @@ class BagFile:
             raise
 
     def sync(self):
-        """Flush to the disk, so that the data survive whatever happens to this machine (blocking).
+        """Flush to the disk, so that the data survive a crash of this machine (blocking).
 
         :raises OSError: the disk failed
         """
         os.fdatasync(self._fd)
 
     def free_bytes(self):
-        """Return the space left for this user on the disk, None if unknown."""
+        """Return the free space for this user on the disk, None if unknown."""
         try:
             found = os.fstatvfs(self._fd)
         except OSError:
@@ -207,11 +206,11 @@ class BagFile:
         return found.f_bavail * found.f_frsize
 
     def close(self):
-        """Write the index, give the file its name, and return its path.
+        """Write the index, rename the file to its final name, and return its path.
 
-        If a full disk has no room for the index, give up chunks, the newest first.
+        If a full disk has no room for the index, drop chunks, the newest first.
 
-        :raises OSError: it stays under the name ``<path>.active``
+        :raises OSError: the file keeps the name ``<path>.active``
         """
         try:
             self._write_index()
@@ -242,7 +241,7 @@ class BagFile:
             except FileExistsError:
                 continue
             except OSError:
-                # No links on this disk (FAT). A file that appears in this instant is lost.
+                # This disk has no links (FAT): a file that appears in this instant is overwritten.
                 if os.path.lexists(path):
                     continue
                 os.rename(self._active, path)
@@ -251,10 +250,10 @@ class BagFile:
 
 
 def _is_taken(path):
-    """Tell whether a file of this name exists.
+    """Return whether a file of this name exists.
 
-    :raises PathRefused: the name belongs to something other than a file
-    :raises OSError: links in a circle, a name that is too long
+    :raises PathRefused: the name is that of something other than a file
+    :raises OSError: circular links, or a name that is too long
     """
     if not os.path.lexists(path):
         return False
@@ -262,16 +261,16 @@ def _is_taken(path):
         if not stat.S_ISREG(os.stat(path).st_mode):
             raise PathRefused('{} is not a file'.format(os.path.basename(path)))
     except FileNotFoundError:
-        pass  # a link to nowhere: the name is taken all the same
+        pass  # a broken link: the name is taken, too
     return True
 
 
 def _make_folder(folder):
-    """Make a folder and those above it.
+    """Make a folder and its parents.
 
-    :raises PathRefused, OSError, ValueError: as :func:`_create`
+    :raises PathRefused, OSError, ValueError: see :func:`_create`
     """
-    if len(os.fsencode(folder)) >= _LONGEST_PATH:
+    if len(os.fsencode(folder)) >= _MAX_PATH:
         raise PathRefused(_WORDS[errno.ENAMETOOLONG])
     for made in (False, True):
         top = system_folder(os.path.realpath(folder))
@@ -285,10 +284,10 @@ def _make_folder(folder):
 
 
 def _create(folder, name):
-    """Return (BagFile, whether its name had to change) in a folder, made if missing.
+    """Return (BagFile, whether its name had to change) in a folder, created if missing.
 
-    :raises PathRefused: files do not go there
-    :raises OSError, ValueError: they cannot
+    :raises PathRefused: files must not be written there
+    :raises OSError, ValueError: files cannot be written there
     """
     _make_folder(folder)
     for number in itertools.count():
@@ -301,16 +300,17 @@ def _create(folder, name):
             continue
 
 
-def open_bag(text, robot, when, env=None):
-    """Make the bag that the operator asked for, or the default one if that is impossible.
+def open_bag(text, robot, when):
+    """Create the requested bag, or the default one if that is impossible.
 
-    :param text: what the operator typed: empty, a folder, or a file with or without ``.bag``; ``~``
-        and variables are expanded
+    :param text: as the operator typed it: empty, a folder, or a file with or without ``.bag``;
+        ``~`` and variables are expanded
     :param when: a :class:`datetime.datetime` in local time
-    :returns: (:class:`BagFile`, note); the note is '' if all is as asked for
-    :raises PathRefused: not even the default can be written; the text says why
+    :returns: (:class:`BagFile`, note, why it is elsewhere); both texts are '' if all is as
+        requested
+    :raises PathRefused: even the default cannot be written; the text is the reason
     """
-    env = os.environ if env is None else env
+    env = os.environ
     usual = default_name(robot, when)
     refusal = None
     try:
@@ -322,9 +322,9 @@ def open_bag(text, robot, when, env=None):
         try:
             file, changed = _create(ros_home(env), usual)
         except (PathRefused, OSError, ValueError) as error:
-            raise PathRefused('cannot write to {}: {}'.format(ros_home(env), words_of(error)))
-        return file, fallback_note(text, words_of(refusal), file.path)
+            raise PathRefused('cannot write to {}: {}'.format(ros_home(env), error_text(error)))
+        return file, '', error_text(refusal)
     if changed:
         return file, '{} exists already; saving to {}'.format(
-            name or usual, os.path.basename(file.path))
-    return file, ''
+            name or usual, os.path.basename(file.path)), ''
+    return file, '', ''

@@ -1,15 +1,15 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The one reader of bags: what was newest at a moment, and what came next.
+"""The reader of bags: the newest messages at a time, and the messages after it.
 
-Read by ``rosbag.Bag``. Beneath its public interface are used, here alone: its connections, its
-table of types, its indexes (for the newest message before a time it offers nothing but reading
-all) and the reading of one message. A bag that was never closed is indexed in memory; nothing is
-ever written.
+Bags are read by ``rosbag.Bag``. This is the only module that uses private parts of it: its
+connections, its table of types, its indexes (to find the newest message before a time its public
+interface would read all) and the reading of a single message. A bag that was never closed is
+indexed in memory; nothing is ever written.
 
-``rosbag`` compiles the definitions in a bag, to read it raw as well, and a definition can be any
-Python. So nothing but types that are installed here, in the very version, is left in a bag that
-was opened, with their own definitions; see :func:`keep_installed`.
+``rosbag`` compiles the definitions in a bag, even to read it raw, and a definition can contain any
+Python. An opened bag is therefore reduced to the types that are installed here in the same version,
+with the installed definitions; see :func:`keep_installed`.
 """
 from bisect import bisect_right
 from collections import OrderedDict
@@ -27,28 +27,30 @@ import rosbag
 import rosbag.bag
 from rosbag.bag import ROSBagException, ROSBagUnindexedException
 
+from mhri.base.io.files import text_in
+from mhri.base.text import listed
 from mhri.graph.ros.messages import installed_class, MessageMissing
 from mhri.recording.folder import (
     bags_of, EVENTS_JSONL, NotASession, read_events, read_info, robots_of, SESSION_YAML)
 
-# Open at once: the one that plays, its neighbours, and those that a seek looks into.
-MOST_OPEN = 6
-# A seek looks for what was last heard of a topic in so many earlier bags at most.
-MOST_LOOKED_INTO = 3
-# So many topics that are left out are named.
-MOST_NAMED = 5
-#: what the bytes of a damaged file lead ``rosbag`` to
+# Maximum number of open bags: the one being played, its neighbours, and those that a seek reads.
+MAX_OPEN = 6
+# A seek looks for the last message of a topic in at most this many earlier bags.
+MAX_LOOKED_INTO = 3
+# At most this many omitted topics are named.
+MAX_NAMED = 5
+#: errors of ``rosbag`` for a damaged file
 DAMAGED = (ROSBagException, OSError, EOFError, ValueError, KeyError, IndexError, TypeError,
            struct.error, MemoryError, OverflowError, RuntimeError, genpy.DeserializationError)
 _NS = 10 ** 9
 _VERSION = 200
-# Of an index record: lengths, the field with the number of its connection, and what it consists of.
+# Parts of an index record: lengths, the field with the number of its connection, and its entries.
 _LENGTH, _CONN = struct.Struct('<I'), b'conn='
 _ENTRY = np.dtype([('s', '<u4'), ('n', '<u4'), ('offset', '<u4')])
 
 
 class Connection(NamedTuple):
-    """Who published a topic: its type as the bag has it, and whether it was latched."""
+    """A publisher of a topic: its type in the bag, and whether it was latched."""
 
     topic: str
     kind: str
@@ -58,7 +60,7 @@ class Connection(NamedTuple):
 
 
 class Recorded(NamedTuple):
-    """One message: when it was received [ns], by which :class:`Connection`, and its bytes."""
+    """One message: its time of receipt [ns], its :class:`Connection`, and its bytes."""
 
     time_ns: int
     connection: Connection
@@ -67,14 +69,14 @@ class Recorded(NamedTuple):
     def message(self):
         """Return the message.
 
-        :raises MessageMissing, genpy.DeserializationError, ValueError: it cannot be read
+        :raises MessageMissing, genpy.DeserializationError, ValueError: the message is unreadable
         """
         return installed_class(self.connection.kind, self.connection.md5sum)().deserialize(
             self.data)
 
 
 class _Place(NamedTuple):
-    """Where a message is: the bag, its connection there, its chunk, and where in that."""
+    """The location of a message: bag, number of its connection there, chunk, and offset in that."""
 
     time_ns: int
     bag: int
@@ -86,7 +88,7 @@ class _Place(NamedTuple):
 class BagSet:
     """Bags in the order of time; not thread-safe.
 
-    :param paths: files; they may overlap a little, as the next one begins with what is latched
+    :param paths: files; they may overlap a little, since each begins with the latched messages
     :raises NotASession: none of them can be read
     """
 
@@ -94,11 +96,11 @@ class BagSet:
         self._paths, self._starts, self._ends = [], [], []
         self._kinds, self._there = [], []
         self._open = OrderedDict()
-        #: sentences about what is left out
+        #: sentences about omissions
         self.problems = []
         left_out = {}
         for path in paths:
-            self._meet(path, left_out)
+            self._add_bag(path, left_out)
         if left_out:
             self.problems.append(_left_out(left_out))
         if not self._paths:
@@ -107,8 +109,8 @@ class BagSet:
         for name in ('_paths', '_starts', '_ends', '_kinds', '_there'):
             setattr(self, name, [getattr(self, name)[index] for index in order])
 
-    def _meet(self, path, left_out):
-        """Take in what a bag holds, without its index."""
+    def _add_bag(self, path, left_out):
+        """Add a bag, without its index."""
         try:
             opened = _opened(path)
             with opened.bag as bag:
@@ -131,26 +133,26 @@ class BagSet:
 
     @property
     def start_ns(self):
-        """When the first message was received."""
+        """The time of receipt of the first message."""
         return self._starts[0]
 
     @property
     def end_ns(self):
-        """When the last message was received."""
+        """The time of receipt of the last message."""
         return max(self._ends)
 
     def connections(self):
-        """Return all connections, each once, in order of time."""
+        """Return all connections without repetition, in order of time."""
         return list(dict.fromkeys(kind for kinds in self._kinds for kind in kinds.values()))
 
     def _bag(self, index):
-        """Return (a bag, {connection: its :class:`Entries`}), opened if it is not."""
+        """Return (bag, {connection: its :class:`Entries`}), opened if necessary."""
         if index in self._open:
             self._open.move_to_end(index)
             return self._open[index]
         bag = _opened(self._paths[index]).bag
         self._open[index] = bag, index_of(bag)
-        while len(self._open) > MOST_OPEN:
+        while len(self._open) > MAX_OPEN:
             self._open.popitem(last=False)[1][0].close()
         return self._open[index]
 
@@ -161,7 +163,7 @@ class BagSet:
             found = bag._read_message((place.chunk, place.offset), raw=True).message
         except DAMAGED as error:
             raise ROSBagException(_reason(error))
-        # The record says of whom it is, too, and both may lie.
+        # The record itself names a connection, too, and either may be wrong.
         if (found[0], found[2]) != (kind.kind, kind.md5sum):
             raise ROSBagException('its index is damaged: a {} for a {}'.format(
                 found[0], kind.kind))
@@ -170,7 +172,7 @@ class BagSet:
     def newest(self, time_ns, wanted=lambda connection: True):
         """Return the newest message of each topic at a time, the oldest first.
 
-        :param wanted: tells which connections count
+        :param wanted: function from a connection to whether it counts
         """
         last = max(0, bisect_right(self._starts, time_ns) - 1)
         found = self._newest_in(last, time_ns, wanted)
@@ -182,7 +184,7 @@ class BagSet:
                 looked += 1
                 found = {**self._newest_in(index, time_ns, lambda kind: wanted(kind)
                                            and kind.topic in missing), **found}
-            if looked == MOST_LOOKED_INTO:
+            if looked == MAX_LOOKED_INTO:
                 break
         return list(self._readable(sorted(
             found.values(), key=lambda place: (place.time_ns, place.bag))))
@@ -198,7 +200,7 @@ class BagSet:
                     self.problems.append(problem)
 
     def _newest_in(self, index, time_ns, wanted):
-        """Return {topic: where its newest message in a bag is}."""
+        """Return {topic: location of its newest message in a bag}."""
         (_, entries), found = self._bag(index), {}
         for number, kind in self._kinds[index].items():
             row = entries.get(number) if wanted(kind) else None
@@ -212,10 +214,10 @@ class BagSet:
     def after(self, time_ns, wanted=lambda connection: True):
         """Yield every message after a time, in order.
 
-        :raises: one of :data:`DAMAGED`: what follows cannot be read
+        :raises: one of :data:`DAMAGED`: the rest is unreadable
         """
         first = max(0, bisect_right(self._starts, time_ns) - 1)
-        # The bag before may end a moment after this one begins.
+        # The previous bag may end a moment after this one begins.
         for index in range(max(0, first - 1), len(self._paths)):
             if self._ends[index] <= time_ns:
                 continue
@@ -231,7 +233,7 @@ class BagSet:
 
     @staticmethod
     def _places(index, number, entries, begin, end):
-        """Yield the places of some entries of a connection."""
+        """Yield the :class:`_Place` of some entries of a connection."""
         for time_ns, chunk, offset in zip(*(part[begin:end].tolist() for part in entries)):
             yield _Place(time_ns, index, number, chunk, offset)
 
@@ -242,28 +244,28 @@ class BagSet:
 
 
 class Entries(NamedTuple):
-    """Where the messages of a connection are, in order of time: arrays of the same length."""
+    """The locations of a connection's messages, in order of time: arrays of the same length."""
 
     times: np.ndarray
     chunks: np.ndarray
     offsets: np.ndarray
 
     def until(self, time_ns):
-        """Return how many are not after a time."""
+        """Return the number of messages up to a time."""
         return int(np.searchsorted(self.times, time_ns, 'right'))
 
 
 def index_of(bag):
-    """Return {connection: :class:`Entries`} of an open bag, of those with any message.
+    """Return {connection: :class:`Entries`} of an open bag, for connections with messages.
 
-    Its own reader makes an object of each message, which takes ten times as long.
+    The reader of ``rosbag`` makes an object per message, which takes ten times as long.
 
     :raises ROSBagException: the index is damaged
     """
     found = {}
     try:
-        for number, chunk, rows in _told(bag) if any(bag._connection_indexes.values()) \
-                else _recorded(bag):
+        in_memory = any(bag._connection_indexes.values())
+        for number, chunk, rows in (_entries_in_memory if in_memory else _entries_on_disk)(bag):
             parts = found.setdefault(number, ([], [], []))
             for part, values in zip(parts, (rows['s'].astype(np.int64) * _NS + rows['n'],
                                             np.full(len(rows), chunk), rows['offset'])):
@@ -278,8 +280,8 @@ def _in_order(times, chunks, offsets):
     return Entries(times[order], chunks[order], offsets[order])
 
 
-def _recorded(bag):
-    """Yield (connection, chunk, its entries there) as the index records behind each chunk say."""
+def _entries_on_disk(bag):
+    """Yield (connection, chunk, its entries there) from the index records after each chunk."""
     stream = bag._file
     for chunk in bag._chunks:
         header = bag._chunk_headers[chunk.pos]
@@ -290,8 +292,8 @@ def _recorded(bag):
             yield _LENGTH.unpack_from(fields, fields.index(_CONN) + len(_CONN))[0], chunk.pos, rows
 
 
-def _told(bag):
-    """Yield the same of a bag that was indexed in memory."""
+def _entries_in_memory(bag):
+    """Yield the same for a bag that was indexed in memory."""
     for number, entries in bag._connection_indexes.items():
         for chunk, of_chunk in itertools.groupby(entries, lambda entry: entry.chunk_pos):
             yield number, chunk, np.array([(entry.time.secs, entry.time.nsecs, entry.offset)
@@ -299,7 +301,7 @@ def _told(bag):
 
 
 class _Opened(NamedTuple):
-    """A bag to read: whether it was closed by its writer, and {topic: why it is left out}."""
+    """A bag to read, whether its writer closed it, and {topic: why it is left out}."""
 
     bag: rosbag.Bag
     whole: bool
@@ -333,7 +335,7 @@ def _index(bag):
         for _ in bag.reindex():
             pass
     except io.UnsupportedOperation:
-        pass  # it would cut off what is not whole, and the file is open to read
+        pass  # it would truncate an incomplete chunk, but the file is open for reading
     whole = bag._chunk_headers
     for number, entries in bag._connection_indexes.items():
         bag._connection_indexes[number] = [
@@ -341,10 +343,10 @@ def _index(bag):
 
 
 def keep_installed(bag):
-    """Leave in an opened bag only types that are installed here; nothing in it gets compiled.
+    """Reduce an opened bag to the types that are installed here; nothing in it is compiled.
 
-    A message is read by the connection that its own record names, whatever an index says: what is
-    not among the connections any more cannot be read.
+    A message is read by the connection in its own record, regardless of the index: messages of a
+    removed connection cannot be read.
 
     :returns: {topic: why it is left out}
     """
@@ -362,9 +364,9 @@ def keep_installed(bag):
 
 
 def _check_rosbag():
-    """Make sure that ``rosbag`` looks into its table of types before it compiles.
+    """Check that ``rosbag`` uses its table of types before it compiles a definition.
 
-    :raises ImportError: this version does it otherwise
+    :raises ImportError: this version does not
     """
     table, probe = rosbag.bag._message_types, SimpleNamespace(
         md5sum='mhri', datatype='mhri/Probe', msg_def='not a definition')
@@ -380,12 +382,9 @@ _check_rosbag()
 
 
 def _left_out(reasons):
-    """Return a sentence about topics that are left out."""
-    named = ['{} ({})'.format(topic, reason)
-             for topic, reason in sorted(reasons.items())[:MOST_NAMED]]
-    more = len(reasons) - len(named)
-    return 'types that are not installed here: {}{}'.format(
-        ', '.join(named), ' and {} more'.format(more) if more else '')
+    """Return a sentence about omitted topics."""
+    return 'types that are not installed here: ' + listed((
+        '{} ({})'.format(topic, reason) for topic, reason in sorted(reasons.items())), MAX_NAMED)
 
 
 def _reason(error):
@@ -393,14 +392,14 @@ def _reason(error):
 
 
 def _connection(found):
-    """Return the :class:`Connection` of one of ``rosbag``'s."""
+    """Return the :class:`Connection` for a connection of ``rosbag``."""
     latched = found.header.get('latching', b'0')
     return Connection(found.topic, found.datatype, found.md5sum, found.msg_def,
                       latched in (b'1', '1'))
 
 
-class Kept(NamedTuple):
-    """What there is to replay: bags, lines of events, robots, and what goes before each topic."""
+class OpenSession(NamedTuple):
+    """A session to replay: bags, events, robots, and the prefix of each topic."""
 
     name: str
     bags: BagSet
@@ -413,9 +412,9 @@ def open_session(path, foreign):
     """Open a session's folder, a folder of bags, or a bag of any program (blocking).
 
     :param foreign: function of ({topic: type}, the file's name) that returns
-        (robots, prefix) where there is no ``session.yaml``
-    :returns: :class:`Kept`
-    :raises NotASession: it cannot be replayed; the text names path and reason
+        (robots, prefix) if there is no ``session.yaml``
+    :returns: :class:`OpenSession`
+    :raises NotASession: the path cannot be replayed; the text names it and the reason
     """
     path = os.path.abspath(os.path.expanduser(path))
     try:
@@ -433,8 +432,8 @@ def _open_folder(path, foreign):
     info = os.path.join(path, SESSION_YAML)
     if not os.path.exists(info):
         return _open_foreign(name, opened, foreign)
-    events = tuple(read_events(_text(os.path.join(path, EVENTS_JSONL))))
-    return Kept(name, opened, events, robots_of(read_info(_text(info)), events), '')
+    events = tuple(read_events(text_in(os.path.join(path, EVENTS_JSONL))))
+    return OpenSession(name, opened, events, robots_of(read_info(text_in(info)), events), '')
 
 
 def _open_file(path, foreign):
@@ -450,13 +449,4 @@ def _open_foreign(name, bags, foreign):
                                   for connection in bags.connections()}, name)
     except NotASession as error:
         raise NotASession('; '.join([str(error)] + bags.problems))
-    return Kept(name, bags, (), robots, prefix)
-
-
-def _text(path):
-    """Return the text of a file, '' of one that is not there."""
-    try:
-        with open(path, encoding='utf-8', errors='replace') as stream:
-            return stream.read()
-    except FileNotFoundError:
-        return ''
+    return OpenSession(name, bags, (), robots, prefix)

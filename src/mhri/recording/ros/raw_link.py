@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Reads one TCPROS connection to a publisher as bytes (http://wiki.ros.org/ROS/TCPROS)."""
 import io
+import select
 import socket
 import struct
 import xmlrpc.client
@@ -14,7 +15,8 @@ from mhri.graph.ros.messages import installed_class, MessageMissing
 from mhri.recording.frames import FrameSplitter
 
 _SMALL, _LARGE = 64 * 1024, 1024 * 1024
-# A robot that loses power says no goodbye: probe it after 5 s of silence, give up after 5 more.
+# A robot that loses power does not close its connections: probe after 5 s of silence, give up after
+# 5 more.
 _KEEPALIVE = ((socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1),
               (socket.IPPROTO_TCP, socket.TCP_KEEPIDLE, 5),
               (socket.IPPROTO_TCP, socket.TCP_KEEPINTVL, 1),
@@ -23,7 +25,7 @@ _KEEPALIVE = ((socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1),
 
 
 class LinkError(Exception):
-    """A publisher that does not connect, or no longer; the text says which and why."""
+    """A connection to a publisher failed or broke; the text names the publisher and the reason."""
 
 
 class RawLink:
@@ -32,10 +34,10 @@ class RawLink:
     :param topic: its absolute name
     :param uri: the XML-RPC address of the publisher's node
     :param caller_id: the name under which to connect
-    :param timeout_s: the most that each step may take [s]
-    ``fields`` is what the publisher says of itself; ``publisher`` is free for the recorder's use.
+    :param timeout_s: time-out of each step [s]
+    ``fields`` is the publisher's header; ``publisher`` is free for the recorder's use.
 
-    :raises LinkError: it does not answer, does not publish this topic, or speaks another protocol
+    :raises LinkError: it does not answer, does not publish this topic, or uses another protocol
     """
 
     def __init__(self, topic, uri, caller_id, timeout_s=3.0):
@@ -53,7 +55,7 @@ class RawLink:
         self._recv = self._socket.recv
 
     def _connect(self, topic, uri, caller_id, timeout_s):
-        """Ask for the topic, connect, and return the publisher's header."""
+        """Request the topic, connect, and return the publisher's header."""
         with xmlrpc.client.ServerProxy(uri, transport=TimedTransport(timeout_s)) as proxy:
             code, message, protocol = proxy.requestTopic(caller_id, topic, [['TCPROS']])
         if code != 1 or not protocol:
@@ -82,9 +84,9 @@ class RawLink:
         return self._socket.fileno()
 
     def read(self):
-        """Return the complete frames, () if nothing has come.
+        """Return the complete frames received, () for none.
 
-        :raises LinkError: the publisher has gone
+        :raises LinkError: the publisher is gone
         """
         if self._early:
             data, self._early = self._early, b''
@@ -100,11 +102,21 @@ class RawLink:
             raise LinkError('{} at {}: {}'.format(*self.key, error))
         raise LinkError('{} at {}: closed'.format(*self.key))
 
+    def wait(self, timeout_s):
+        """Return the next complete frames, () if none is received within a time [s].
+
+        :raises LinkError: the publisher is gone
+        """
+        frames = self.read()
+        if not frames and select.select([self], [], [], max(0.0, timeout_s))[0]:
+            frames = self.read()
+        return frames
+
     def read_all(self):
-        """Yield all frames that have come by now."""
+        """Yield all frames received so far."""
         while True:
             try:
-                # Part of a message yields no frame, but more bytes may wait behind it.
+                # Part of a message yields no frame, but more bytes may be available.
                 before = self._splitter.wanted
                 frames = self.read()
             except LinkError:
@@ -114,23 +126,23 @@ class RawLink:
                 return
 
     def close(self):
-        """Hang up."""
+        """Close the connection."""
         if self._socket is not None:
             self._socket.close()
 
     def cut(self):
-        """Hang up with a reset: the publisher learns of it before it sends the next message.
+        """Reset the connection, so that the publisher detects it before the next message.
 
-        If merely closed, rospy learns of it only by sending that message whole.
+        rospy would detect a normal close only after sending that whole message.
         """
         self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack('ii', 1, 0))
         self.close()
 
 
 def _definition(found):
-    """Return the definition of a type: as installed here, else as its publisher says, or ''.
+    """Return the definition of a type: as installed here, else from its publisher, or ''.
 
-    Programs that read the bag later compile what it says.
+    The installed one is preferred, since programs that read the bag later compile the definition.
     """
     try:
         return installed_class(found['type'], found['md5sum'])._full_text

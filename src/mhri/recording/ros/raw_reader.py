@@ -14,12 +14,12 @@ _LOG = logging.getLogger(__name__)
 class RawReader:
     """The connections of a recording.
 
-    Separate threads make the connections, so that an address that does not answer holds nothing up;
-    a broken one is made anew as long as its publisher is on the graph.
+    Separate threads make the connections, so that an address that does not answer blocks nothing;
+    a broken connection is renewed as long as its publisher is on the graph.
 
     :param caller_id: the name under which to connect
     :param on_frame: called on the reading thread with (link, frame) for each message, in order
-    :param on_turn: called after each turn of reading; returns in how many seconds to call it again,
+    :param on_turn: called after each turn of reading; returns the time until its next call [s],
         None for "with the next message"
     :param on_end: called on the reading thread when everything received is read
     """
@@ -44,11 +44,11 @@ class RawReader:
         """Start reading."""
         threading.Thread(target=self._run, name='raw_reader', daemon=True).start()
 
-    def want(self, topic, uris):
+    def connect(self, topic, uris):
         """Connect to the publishers of a topic that are not connected yet; return at once.
 
-        It does not hang up on publishers that are gone: their last messages may still be on the
-        way, and they hang up themselves.
+        Connections to publishers that are gone are not closed: their last messages may still be on
+        the way, and the publishers close them.
         """
         with self._lock:
             if self._stopping:
@@ -61,26 +61,21 @@ class RawReader:
                              daemon=True).start()
 
     def leave(self, topics):
-        """Hang up on all publishers of some topics; return at once."""
+        """Close the connections to all publishers of some topics; return at once."""
         with self._lock:
             for topic in topics:
                 self._wanted.pop(topic, None)
             self._left.update(topics)
-        self.wake()
+            if not self._stopping:
+                os.write(self._wake_write, b'x')
 
     def stop(self):
-        """Read what has come by now, then end; return at once."""
+        """Stop after reading the pending messages; return at once."""
         with self._lock:
             if self._stopping:
                 return
             self._stopping = True
             os.write(self._wake_write, b'x')
-
-    def wake(self):
-        """Call ``on_turn`` soon."""
-        with self._lock:
-            if not self._stopping:
-                os.write(self._wake_write, b'x')
 
     def _connect(self, topic, uri):
         try:
@@ -100,7 +95,7 @@ class RawReader:
     def _run(self):
         try:
             self._read_until_stopped()
-        except Exception:  # the guard of this thread: the recording ends with what it has
+        except Exception:  # the guard of this thread: the recording ends with the messages so far
             _LOG.exception('the reading of %s ends', self._caller_id)
         with self._lock:
             self._stopping = True
@@ -130,7 +125,7 @@ class RawReader:
             wait_s = self._on_turn()
 
     def _woken(self):
-        """Take in new connections; return whether this was the end."""
+        """Handle new connections; return whether to stop."""
         os.read(self._wake_read, 4096)
         with self._lock:
             fresh, self._fresh = self._fresh, []
@@ -162,4 +157,4 @@ class RawReader:
             self._tried.discard(link.key)
             again = self._wanted.get(topic, ())
         if uri in again:
-            self.want(topic, again)
+            self.connect(topic, again)

@@ -19,14 +19,14 @@ class Recordings:
         self.limits = RecordingLimits()
         self._lock = threading.Lock()
         self._recorders = {}
-        # Stopped, and already followed by another while their files are still being closed.
+        # Stopped recordings with a successor, whose files are still being closed.
         self._closing = []
         self._stopped = set()
 
     def start(self, robot, robot_type, path='', choices=()):
-        """Begin to record a robot; if one is running already, it goes on unchanged.
+        """Start recording a robot; a running recording continues unchanged.
 
-        While its last recording is still being closed, the new one begins beside it.
+        A new recording can start while the previous one is still being closed.
 
         :param robot_type: :class:`mhri.base.robot_types.RobotType`
         :param path: as the operator typed it, '' for the default
@@ -45,7 +45,7 @@ class Recordings:
         recorder.start()
 
     def stop(self, robot):
-        """End a robot's recording; its file closes in the background."""
+        """Stop a robot's recording; its file is closed in the background."""
         with self._lock:
             recorder = self._recorders.get(robot)
             self._stopped.add(robot)
@@ -64,7 +64,7 @@ class Recordings:
         return recorder.status() if recorder else NOTHING
 
     def close(self):
-        """End all recordings and wait until their files are complete and closed."""
+        """Stop all recordings and wait until their files are complete and closed."""
         with self._lock:
             recorders = self._closing + list(self._recorders.values())
         for recorder in recorders:

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A subscriber on the graph without rospy: it learns who publishes, and when that changes."""
+"""A subscriber on the graph without rospy, which reports the publishers of its topics."""
 import logging
 import os
 import threading
@@ -16,7 +16,7 @@ RENEWAL_S = 2.0
 
 
 class _SlaveApi:
-    """What other nodes and the tools ask of a node (http://wiki.ros.org/ROS/Slave_API)."""
+    """The API of a node for other nodes and tools (http://wiki.ros.org/ROS/Slave_API)."""
 
     def __init__(self, node):
         self._node = node
@@ -54,17 +54,17 @@ class _SlaveApi:
 
 
 class TapNode:
-    """Subscribes topics of any type under a name of its own.
+    """Subscribes topics of any type under its own node name.
 
-    rospy has one connection for all subscribers of a topic in a program, with the class and the
-    queue of one message that the displays ask for: a recording beside them needs its own. The node
-    renews its subscriptions now and then, which also restores them after a restart of the master.
+    rospy has one connection for all subscribers of a topic in a program, with the message class and
+    the queue of one message that the displays use; a recording needs its own. The node renews its
+    subscriptions periodically, which also restores them after a restart of the master.
 
     :param name: the node's name, e.g. ``/mhri_recorder_bot1``
     :param topics: absolute names
-    :param renewal_s: how often to renew them [s]
+    :param renewal_s: period of renewing the subscriptions [s]
     :param on_publishers: called with (topic, XML-RPC addresses) at every report, on a thread of
-        this node; the same ones come repeatedly
+        this node; reports may repeat
     """
 
     def __init__(self, name, topics, on_publishers, renewal_s=RENEWAL_S):
@@ -83,7 +83,7 @@ class TapNode:
         return self._api.uri if self._api else ''
 
     def start(self):
-        """Open the address and begin to subscribe; return at once.
+        """Open the address and start subscribing; return at once.
 
         :raises OSError: no address is available
         """
@@ -97,7 +97,7 @@ class TapNode:
         self.worker.start()
         self.worker.do(self._renew)
 
-    def want(self, topics):
+    def set_topics(self, topics):
         """Subscribe exactly these topics from now on; return at once."""
         self.worker.do(self._change, tuple(topics))
 
@@ -111,7 +111,7 @@ class TapNode:
         self._renew()
 
     def update(self, topic, publishers):
-        """Report who publishes a topic now (on the worker's thread)."""
+        """Report the present publishers of a topic (on the worker's thread)."""
         if self._open and topic in self.topics:
             self._on_publishers(topic, publishers)
 

@@ -1,43 +1,44 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The ROS side of a screen that shows a replay: it looks, and can ask nobody but the player."""
+"""The backend of a replay's screen: it subscribes, and sends requests only to the player."""
 from dataclasses import replace
 import time
 
 import rospy
-from std_msgs.msg import UInt32
+from std_msgs.msg import String, UInt32
 
 from mhri.base.views import ControlView, LIVE, PROOF_STOPPED, ROS_CONNECTED
+from mhri.camera.images import DEPTH, RGB
 from mhri.graph.ros.node_client import call
 from mhri.graph.ros.worker import Worker
 from mhri.msg import ReplayState, RobotSelect
 from mhri.robots.link_quality import RecordedQuality
-from mhri.robots.ros.look import Found
+from mhri.robots.ros.graph_scan import Found
+from mhri.screen.ros.active_screen import ActiveScreen
 from mhri.screen.ros.backend import ScreenBackend
-from mhri.screen.ros.seat import Seat
 from mhri.screen.status import CALM
 from mhri.session.playing import ReplayClock
-from mhri.session.recalled import Recalled
+from mhri.session.history import SessionHistory
 from mhri.srv import ControlReplay
 
 ROBOTS_PARAMETER, DRIVEN_PARAMETER = '/mhri/replay/robots', '/mhri/replay/driven'
 CONTROL_SERVICE = '/mhri_replay/control'
-NOT_OURS = 'recorded by another program: who drove is not known'
-# The player reads its files before it says who was there.
-LOOK_S, PATIENCE_S = 0.2, 60.0
+NOT_OURS = 'recorded by another program, or an older mhri: who drove is not known'
+# The player reads its files before it publishes the robots.
+LOOK_S, TIMEOUT_S = 0.2, 60.0
 
 
 class _Named:
-    """A robot that was recorded, as one that was found."""
+    """A recorded robot, with the interface of a robot found on the graph."""
 
     def __init__(self, name):
         self.name = name
 
 
 class ReplayBackend(ScreenBackend):
-    """What a :class:`ScreenBackend` shows, counted by the session's own time; what it does, not.
+    """A read-only :class:`ScreenBackend` whose clock is the session's time.
 
-    Everything that would ask the mux, the gates or a robot for something does nothing.
+    All requests to the drive or a robot do nothing.
 
     :param argv: the node's command line (remappings)
     :param lines: the :class:`mhri.recording.folder.SessionEvent` values of the session
@@ -47,11 +48,13 @@ class ReplayBackend(ScreenBackend):
 
     def __init__(self, argv=(), lines=()):
         clock = ReplayClock(time.monotonic)
-        super().__init__(argv, Seat(), (clock, clock.wall))
-        self._fleet.quality = RecordedQuality
-        self.recalled = Recalled(lines)
-        #: called, on a ROS thread, when the session jumps: what was heard before counts no more
+        super().__init__(argv, ActiveScreen(), (clock, clock.wall))
+        self._monitors.quality = RecordedQuality
+        self.history = SessionHistory(lines)
+        #: called, on a ROS thread, when the session jumps, which makes earlier messages invalid
         self.on_jump = lambda: None
+        #: {robot: RGB or DEPTH}: the kind of picture that was recorded of it at this time
+        self.pictures = {}
         self._selected = ()
         self._state = None
         self._topics = []
@@ -66,15 +69,16 @@ class ReplayBackend(ScreenBackend):
         self._topics = [
             rospy.Subscriber('/mhri_replay/state', ReplayState, self._on_state, queue_size=10,
                              tcp_nodelay=True),
+            rospy.Subscriber('/mhri_replay/pictures', String, self._on_pictures),
             rospy.Subscriber('/robot_controller/robot_select', RobotSelect, self._on_selected,
                              queue_size=10, tcp_nodelay=True)]
         begun = time.monotonic()
-        while not self._closing.wait(LOOK_S) and time.monotonic() - begun < PATIENCE_S:
+        while not self._closing.wait(LOOK_S) and time.monotonic() - begun < TIMEOUT_S:
             robots = rospy.get_param(ROBOTS_PARAMETER, None)
             if robots is not None:
                 self.selection.numbers.restore({name: number for name, number in robots.items()
                                                 if number})
-                self._gates.expected = rospy.get_param(DRIVEN_PARAMETER, True)
+                self._drive.expected = rospy.get_param(DRIVEN_PARAMETER, True)
                 self._events.put(('found', Found(live=tuple(map(_Named, robots)),
                                                  facts=dict.fromkeys(robots))))
                 return
@@ -84,11 +88,17 @@ class ReplayBackend(ScreenBackend):
         self._state = state
         if jumped:
             self.on_jump()
-        if self._mux is not None:
-            self._mux.tell(tuple(state.asked) or (0.0, 0.0), tuple(state.limits) or None)
-        self.clock.hear(state.start.to_sec(), state.position_s, state.until_s,
-                        state.speed if state.playing else 0.0, state.jumps)
+        self.clock.update(state.start.to_sec(), state.position_s, state.until_s,
+                          state.speed if state.playing else 0.0, state.jumps)
         self._heard.publish(state.number)
+
+    def _on_pictures(self, message):
+        kinds = {}
+        for topic in message.data.split():
+            kinds.setdefault(topic.split('/')[1], set()).add(
+                DEPTH if 'depth' in topic.lower() else RGB)
+        self.pictures = {name: kind for name, found in kinds.items() if len(found) == 1
+                         for kind in found}
 
     def _on_selected(self, message):
         self._selected = tuple(message.robots)
@@ -98,43 +108,43 @@ class ReplayBackend(ScreenBackend):
         return self._state
 
     def control(self, action, value=0.0):
-        """Ask the player for something, as ``mhri/ControlReplay`` says; returns at once."""
+        """Send a request to the player, see ``mhri/ControlReplay``; return at once."""
         self._caller.do(self._control_player, action, value)
 
     def _control_player(self, action, value):
         answer = call(CONTROL_SERVICE, ControlReplay, action, value, wait_s=1.0)
         if answer is None:
-            self._events.put(('told', 'the player does not answer'))
+            self._events.put(('message', 'the player does not answer'))
         elif not answer.success:
-            self._events.put(('told', answer.message))
+            self._events.put(('message', answer.message))
 
     def view(self):
-        """Return the :class:`PanelView` of this moment of the session."""
-        # The message of an older mhri cannot be read any more; the lines of its session can.
-        selected = self.recalled.selected(self.clock.wall())
+        """Return the :class:`ScreenView` at the current time of the session."""
+        # Messages of an older mhri can no longer be read; the lines of its session can.
+        selected = self.history.selected(self.clock.wall())
         self.selection.check(self._selected if selected is None else selected)
         view = super().view()
-        if self._gates.expected or view.ros != ROS_CONNECTED:
+        if self._drive.expected or view.ros != ROS_CONNECTED:
             return view
         return replace(view, status=NOT_OURS, status_level=CALM)
 
     def _robot_view(self, name, selected):
         view = super()._robot_view(name, selected)
         now = self.clock.wall()
-        proof = self.recalled.proof(name, now)
+        proof, words = self.history.proof(name, now), self.history.link_note(name, now)
+        then = {}
         if proof is not None and (view.proof is None or proof.state == PROOF_STOPPED
                                   or view.proof.state != proof.state):
-            view = replace(view, proof=proof)
-        words = self.recalled.link_note(name, now)
+            then['proof'] = proof
         if view.link == LIVE and not view.slow and words:
-            return replace(view, note=words, slow=True)
-        return view
+            then.update(note=words, slow=True)
+        return replace(view, **then)
 
     def _control(self):
         return ControlView()
 
     def drives(self):
-        """Tell that this screen never drives."""
+        """Return False: this screen never drives."""
         return False
 
     def repeat_selection(self):
@@ -144,12 +154,13 @@ class ReplayBackend(ScreenBackend):
         """Leave the selection as it was recorded."""
 
     def _nothing(self, *_):
-        """Do nothing: what was done was done then."""
+        """Do nothing in a replay."""
 
-    stop_all = release = take_control = set_motor_power = keep_together = brake = talk = _nothing
-    alarm = request_mode = restore_mode = request_limits = send_stick = record = _nothing
+    stop_all = stop_robots = release = take_control = set_motor_power = _nothing
+    keep_together = brake = talk = alarm = request_mode = restore_mode = _nothing
+    request_limits = send_stick = record = _nothing
 
     def close(self, forget=False):
-        """End; the player is not told."""
+        """Close the backend; the player continues."""
         self._caller.stop()
         super().close(forget)

@@ -1,8 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Takes a robot off the list: at once, or in two steps where it is in use; and back again."""
+"""Removes a robot from the list, at once or, if it is in use, in two steps; can undo it."""
 from python_qt_binding.QtCore import QElapsedTimer, QObject, Qt, QTimer, Signal
-from python_qt_binding.QtWidgets import QPushButton
 
 from mhri.base.gui import theme, words
 from mhri.base.gui.labels import plain_tip, TextLine
@@ -10,7 +9,7 @@ from mhri.robots.busy import remove_question
 
 CONFIRM_WITHIN_S = 5.0
 UNDO_WITHIN_S = 20.0
-# A second click where "Remove" was means nothing.
+# "Undo", which replaces "Remove", ignores clicks for this long: a double click removes for good.
 SETTLED_S = 0.5
 REMOVE, KEEP, UNDO = 'Remove', 'Keep', 'Undo'
 
@@ -18,16 +17,16 @@ REMOVE, KEEP, UNDO = 'Remove', 'Keep', 'Undo'
 class RemoveSteps(QObject):
     """The buttons below the list while a robot is removed.
 
-    One that is selected or recorded is asked for in place: the question and "Remove it" are beside
-    where "Remove" was, and there is "Keep" then, so that a double click removes nothing. For 20 s
-    after that "Undo" is there instead, unless another robot is highlighted.
+    Removing a selected or recorded robot needs a confirmation: the question and "Remove it" appear
+    beside "Remove", which becomes "Keep", so that a double click removes nothing. For 20 s after a
+    removal "Undo" replaces them, unless another robot is highlighted.
 
     :param screen: :class:`mhri.screen.gui.screen.ScreenWidget`, its form loaded
     """
 
     #: name of the robot
     remove_requested = Signal(str)
-    #: name of the robot that is to be back
+    #: name of the robot to put back
     undo_requested = Signal(str)
 
     def __init__(self, screen):
@@ -41,29 +40,22 @@ class RemoveSteps(QObject):
         self._connect()
 
     def _build(self, row):
-        """Make the parts, and place them in the row of "Remove"."""
+        """Make the widgets, and place them in the row of "Remove"."""
         parent = self._button.parentWidget()
         self._line = TextLine(parent)
         self._line.setObjectName('remove_label')
-        self.confirm_button, self.undo_button = (
-            QPushButton(text, parent) for text in ('Remove it', UNDO))
-        self.confirm_button.setObjectName('remove_confirm_button')
-        self.undo_button.setObjectName('undo_button')
         row.insertWidget(0, self._line, 1)
+        self.confirm_button = theme.finger_button(parent, 'remove_confirm_button', 'Remove it')
+        self.undo_button = theme.finger_button(parent, 'undo_button', UNDO)
         for button in (self.confirm_button, self.undo_button):
-            side = theme.touch_size(button)
-            button.setFocusPolicy(Qt.TabFocus)
-            button.setMinimumSize(theme.text_width(button.font(), button.text()) + side, side)
             row.addWidget(button)
         row.removeWidget(self._button)
         row.addWidget(self._button)
         for part in (self._line, self.confirm_button, self.undo_button):
             part.hide()
-        self._countdown, self._undo_timer = QTimer(self), QTimer(self)
-        for timer, within_s in ((self._countdown, CONFIRM_WITHIN_S),
-                                (self._undo_timer, UNDO_WITHIN_S)):
-            timer.setSingleShot(True)
-            timer.setInterval(round(1000 * within_s))
+        self._countdown, self._undo_timer = (
+            QTimer(self, singleShot=True, interval=round(1000 * within_s))
+            for within_s in (CONFIRM_WITHIN_S, UNDO_WITHIN_S))
         self._offered = QElapsedTimer()
 
     def _connect(self):
@@ -75,14 +67,14 @@ class RemoveSteps(QObject):
         self._undo_timer.timeout.connect(self._show)
 
     def show_robots(self, robots):
-        """Follow the robots: values of :class:`mhri.base.views.RobotView`."""
+        """Update the robots: values of :class:`mhri.base.views.RobotView`."""
         self._robots = robots
         if self._asked and self._asked != self._list.current:
             self._keep()
         self._show()
 
     def offer_undo(self, name):
-        """Offer to put a robot back that was just removed."""
+        """Offer to put back a robot that was just removed."""
         self._removed = name
         self.undo_button.setToolTip(plain_tip('Put {} back'.format(name)))
         self._undo_timer.start()
@@ -93,7 +85,7 @@ class RemoveSteps(QObject):
             self.undo_button.setFocus(Qt.OtherFocusReason)
 
     def _on_button(self):
-        """Remove, ask, or keep it after all."""
+        """Remove the highlighted robot, ask first, or cancel."""
         name = self._list.current
         if self._asked:
             self._keep()
@@ -106,20 +98,20 @@ class RemoveSteps(QObject):
                 self.remove_requested.emit(name)
 
     def _ask(self, name, question):
-        """First step."""
+        """Show the question (first step)."""
         self._asked = name
         self._line.show_text(question, shorter=(*words.beginnings(question), name + '?'))
         self._countdown.start()
         self._show()
 
     def _keep(self):
-        """Back from the first step."""
+        """Cancel the first step."""
         self._asked = ''
         self._countdown.stop()
         self._show()
 
     def _confirm(self):
-        """Second step."""
+        """Remove the robot (second step)."""
         name, had_focus = self._asked, self.confirm_button.hasFocus()
         self._keep()
         if had_focus:
@@ -135,7 +127,7 @@ class RemoveSteps(QObject):
             self.undo_requested.emit(self._removed)
 
     def _show(self):
-        """Show the step it is at."""
+        """Show the widgets of the current step."""
         asking = bool(self._asked)
         undo = self._undo_timer.isActive() and self._list.current is None and not asking
         for part in (self._line, self.confirm_button):
@@ -143,7 +135,7 @@ class RemoveSteps(QObject):
         for part in self._others:
             part.setVisible(not asking)
         if not undo and self.undo_button.hasFocus():
-            # Else Return would press whatever is next.
+            # Otherwise Return would press the widget that gets the focus next.
             self._list.setFocus(Qt.OtherFocusReason)
         self.undo_button.setVisible(undo)
         self._button.setVisible(not undo)

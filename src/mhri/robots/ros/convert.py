@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Turns messages into values and back."""
+"""Converts messages to values and back."""
 import math
 import struct
 
@@ -11,11 +11,11 @@ from sensor_msgs.msg import Joy
 
 from mhri.base.limits import Velocity
 
-# With its length before it.
+# Length, then the message.
 _TWIST = struct.Struct('<I6d')
-# linear.x and angular.z of six.
-_PLANAR = struct.Struct('<d32xd')
-# Number, time, and how long frame_id is.
+# Everything before frame_id, with number and time 0; the velocity follows frame_id.
+_STAMPED = struct.Struct('<I12xI')
+# Number, time, and the length of frame_id.
 _HEADER = struct.Struct('<4I')
 _COUNT = struct.Struct('<I')
 
@@ -33,22 +33,28 @@ def header_of(message, message_class):
     return message.header.seq, message.header.stamp.to_sec()
 
 
-def to_twist(linear_mps, angular_rad_s):
-    """Return a planar ``geometry_msgs/Twist`` (REP-103: x forward, z up)."""
+def to_twist(linear_mps, angular_rad_s, lateral_mps=0.0):
+    """Return a planar ``geometry_msgs/Twist`` (REP-103: x forward, y to the left, z up)."""
     message = Twist()
-    message.linear.x = linear_mps
+    message.linear.x, message.linear.y = linear_mps, lateral_mps
     message.angular.z = angular_rad_s
     return message
 
 
-def packed_twist(linear_mps, angular_rad_s):
-    """Return the same as bytes, the length before them: what TCPROS sends."""
-    return _TWIST.pack(_TWIST.size - 4, linear_mps, 0.0, 0.0, 0.0, 0.0, angular_rad_s)
+def packed_twist(linear_mps, angular_rad_s, lateral_mps=0.0):
+    """Return the same as bytes after their length, as TCPROS sends it."""
+    return _TWIST.pack(_TWIST.size - 4, linear_mps, lateral_mps, 0.0, 0.0, 0.0, angular_rad_s)
+
+
+def packed_guard_zero(frame_id):
+    """Return a zero ``geometry_msgs/TwistStamped`` as bytes after their length."""
+    text = frame_id.encode()
+    return _STAMPED.pack(_STAMPED.size - 4 + len(text) + 48, len(text)) + text + bytes(48)
 
 
 def from_twist(message):
     """Return the planar part of a ``geometry_msgs/Twist`` as a :class:`Velocity`."""
-    return Velocity(message.linear.x, message.angular.z)
+    return Velocity(message.linear.x, message.angular.z, message.linear.y)
 
 
 def yaw_of(quaternion):
@@ -57,26 +63,9 @@ def yaw_of(quaternion):
     return math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
 
 
-class PlanarTwist(Twist):
-    """``geometry_msgs/Twist`` as a :class:`Velocity`, ``velocity``, for subscribers.
-
-    What genpy generates makes an object of every part of a message. At a stick's pace hardly any of
-    that code is in the processor's cache when it is needed: it takes longer than the rules do.
-    """
-
-    def __init__(self):
-        self.velocity = None
-
-    def deserialize(self, data):
-        """Read it from bytes.
-
-        :raises genpy.DeserializationError: they are too few, or too many
-        """
-        try:
-            self.velocity = Velocity(*_PLANAR.unpack(data))
-        except struct.error as error:
-            raise genpy.DeserializationError(error)
-        return self
+def turn_of(heading_rad):
+    """Return (z, w) of the orientation of a heading; x and y are 0."""
+    return math.sin(0.5 * heading_rad), math.cos(0.5 * heading_rad)
 
 
 class ShortJoy(Joy):
@@ -86,9 +75,9 @@ class ShortJoy(Joy):
         self.frame_id, self.axes, self.buttons = '', (), ()
 
     def deserialize(self, data):
-        """Read it from bytes.
+        """Read the message from bytes.
 
-        :raises genpy.DeserializationError: they are too few
+        :raises genpy.DeserializationError: the bytes are too few
         """
         try:
             at = _HEADER.size + _HEADER.unpack_from(data)[3]
@@ -101,24 +90,15 @@ class ShortJoy(Joy):
 
 
 def _numbers(data, at, kind):
-    """Return an array that begins there as a tuple, and where it ends."""
+    """Return the array at an offset as a tuple, and the offset of its end."""
     count, = _COUNT.unpack_from(data, at)
     at += _COUNT.size
     return struct.unpack_from('<{}{}'.format(count, kind), data, at), at + 4 * count
 
 
-def is_driven(robot):
-    """Tell whether the velocity the gates last sent to a robot is not zero.
-
-    :param robot: ``mhri/RobotGate``
-    """
-    sent = robot.sent
-    return any((sent.linear.x, sent.linear.y, sent.angular.z))
-
-
 def round_trip_s(robot):
-    """Return the round trip to a robot [s] as measured by the gates; None if unknown.
+    """Return the round trip to a robot [s] as measured by the drive; None if unknown.
 
-    :param robot: ``mhri/RobotGate``
+    :param robot: ``mhri/RobotDrive``
     """
     return robot.round_trip_s if math.isfinite(robot.round_trip_s) else None

@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Asks a robot's node a question once a second, and times the answer.
+"""Sends a request to a robot's node once a second, and times the answer.
 
-The question is ``getPid`` of the ROS slave API, over a connection kept open, so that the time is
-one round trip without setting up a connection.
+The request is ``getPid`` of the ROS slave API, over a connection kept open, so that the time is
+one round trip without connection setup.
 """
 import http.client
 import threading
@@ -14,7 +14,7 @@ import xmlrpc.client
 import rospy
 
 PERIOD_S = 1.0
-PATIENCE_S = 3.0
+TIMEOUT_S = 3.0
 
 
 class LinkProbe:
@@ -34,7 +34,7 @@ class LinkProbe:
         threading.Thread(target=self._run, name='link ' + name, daemon=True).start()
 
     def close(self):
-        """End; returns at once."""
+        """Stop the thread; returns at once."""
         self._ended.set()
 
     def _run(self):
@@ -67,7 +67,7 @@ class LinkProbe:
         self._hang_up()
         parts = urlsplit(uri)
         self._connection = http.client.HTTPConnection(parts.hostname, parts.port,
-                                                      timeout=PATIENCE_S)
+                                                      timeout=TIMEOUT_S)
         self._connection.connect()
         self._uri = uri
 

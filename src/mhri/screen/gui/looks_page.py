@@ -1,107 +1,85 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The page of the drawer that says how the screen looks: layout, colours, numbers, full screen."""
+"""The drawer's settings of the screen: layout, colours, numbers, map, full screen."""
 from python_qt_binding.QtCore import Qt, Signal
-from python_qt_binding.QtWidgets import (
-    QButtonGroup, QFrame, QLabel, QScrollArea, QVBoxLayout, QWidget)
+from python_qt_binding.QtWidgets import QComboBox, QGridLayout, QLabel
 
 from mhri.base.gui import theme
-from mhri.base.gui.arrows import keep_arrows
-from mhri.base.gui.switches import SwitchBox, SwitchRadio
-from mhri.base.gui.wide_scroll_bar import WideScrollBar
+from mhri.base.gui.choices import IgnoresWheel
+from mhri.base.gui.controls import Combo
+from mhri.base.gui.layouts import add_parts
+from mhri.base.gui.page import Page
+from mhri.base.gui.switches import SwitchBox
+from mhri.base.gui.text_size import SIZES
 from mhri.screen.arrangement import ALIKE, AUTO, ONE
 
 TITLE = 'Screen'
-LAYOUTS = {AUTO: 'Those that drive together large', ONE: 'One large, the others small',
+LAYOUTS = {AUTO: 'Enlarge driven robots', ONE: 'One large, the others small',
            ALIKE: 'All alike'}
 
 
-class LooksPage(QScrollArea):
-    """Radio buttons ``layout_<name>`` and ``theme_<name>``, a check box and a button.
+class _Choice(IgnoresWheel, Combo):
+    """A drop-down of settings."""
 
-    It scrolls where it is not high enough: the drawer is not to be higher because of it.
-    """
+
+class LooksPage(Page):
+    """Drop-downs ``layout_choice``, ``theme_choice``, ``text_choice``, check boxes, a button."""
 
     #: a key of :data:`LAYOUTS`
     layout_chosen = Signal(str)
     #: a key of :data:`mhri.base.gui.theme.THEMES`
     theme_chosen = Signal(str)
-    #: whether the numbers over the pictures are to be seen
-    numbers_chosen = Signal(bool)
-    #: whether the map is to be seen
-    map_chosen = Signal(bool)
-    #: in or out of full screen
-    full_screen_requested = Signal()
+    #: one of :data:`mhri.base.gui.text_size.SIZES` [%]
+    text_chosen = Signal(int)
 
     def __init__(self, parent=None):
-        super().__init__(parent)
+        super().__init__('looks_page', parent)
         self._build()
         self._connect()
 
     def _build(self):
         """Make and place the parts."""
-        self.setObjectName('looks_page')
-        self.setFont(theme.base_font(self.font()))
-        self.setFrameShape(QFrame.NoFrame)
-        self.setFocusPolicy(Qt.NoFocus)
-        self.setWidgetResizable(True)
-        self.setVerticalScrollBar(WideScrollBar(self))
-        self.setWidget(QWidget(self))
-        column = QVBoxLayout(self.widget())
-        column.setContentsMargins(0, 0, 0, 0)
-        self._layouts = self._choices(column, 'Pictures', 'layout_', LAYOUTS)
-        self._themes = self._choices(column, 'Colours', 'theme_', theme.THEMES)
+        self._grid = QGridLayout()
+        self._grid.setHorizontalSpacing(2 * theme.GRID)
+        self._grid.setColumnStretch(1, 1)
+        self.layout_choice = self._choice('layout_choice', 'Pictures', LAYOUTS)
+        self.theme_choice = self._choice('theme_choice', 'Colours', theme.THEMES)
+        self.text_choice = self._choice('text_choice', 'Text size', {
+            percent: '{} %'.format(percent) for percent in SIZES})
         self.numbers_box = SwitchBox('Numbers over the pictures (H)', self)
         self.numbers_box.setObjectName('numbers_box')
         self.map_box = SwitchBox('Map (M)', self)
         self.map_box.setObjectName('map_box')
         self.full_screen_button = theme.finger_button(
             self, 'full_screen_button', 'Full screen (F11)')
-        column.addSpacing(self.fontMetrics().height() // 2)
-        column.addWidget(self.numbers_box)
-        column.addWidget(self.map_box)
-        column.addWidget(self.full_screen_button, 0, Qt.AlignLeft)
-        column.addStretch(1)
+        self.column.setSpacing(2 * theme.GRID)
+        add_parts(self.column, self._grid, self.numbers_box, self.map_box,
+                  (self.full_screen_button, 0, Qt.AlignLeft))
 
-    def _choices(self, column, head, prefix, texts):
-        """Place a heading and a radio button for each of some texts; return them by key."""
-        label = QLabel(head, self)
-        label.setFont(theme.larger(self.font(), 1.1, bold=True))
-        column.addWidget(label)
-        group, buttons = QButtonGroup(self), {}
+    def _choice(self, name, label, texts):
+        """Place a drop-down of {key: text} beside its label."""
+        combo = theme.for_fingers(_Choice(self), name, label)
+        combo.setSizeAdjustPolicy(QComboBox.AdjustToMinimumContentsLengthWithIcon)
+        combo.setMinimumContentsLength(10)
         for key, text in texts.items():
-            button = buttons[key] = SwitchRadio(text, self)
-            button.setObjectName(prefix + key)
-            button.setAccessibleName('{}: {}'.format(head, text))
-            keep_arrows(button)
-            group.addButton(button)
-            column.addWidget(button)
-        column.addSpacing(self.fontMetrics().height() // 2)
-        return buttons
+            combo.addItem(text, key)
+        row = self._grid.rowCount()
+        self._grid.addWidget(QLabel(label, self), row, 0)
+        self._grid.addWidget(combo, row, 1)
+        return combo
 
     def _connect(self):
-        """Wire the switches; only clicks count, not what is shown."""
-        for buttons, signal in ((self._layouts, self.layout_chosen),
-                                (self._themes, self.theme_chosen)):
-            for key, button in buttons.items():
-                button.clicked.connect(lambda *_, key=key, signal=signal: signal.emit(key))
-        self.numbers_box.clicked.connect(self.numbers_chosen)
-        self.map_box.clicked.connect(self.map_chosen)
-        self.full_screen_button.clicked.connect(self.full_screen_requested)
+        """Connect the choices of the operator, not changes by the program."""
+        self.layout_choice.activated[int].connect(
+            lambda _: self.layout_chosen.emit(self.layout_choice.currentData()))
+        self.theme_choice.activated[int].connect(
+            lambda _: self.theme_chosen.emit(self.theme_choice.currentData()))
+        self.text_choice.activated[int].connect(
+            lambda _: self.text_chosen.emit(self.text_choice.currentData()))
 
-    def add_part(self, title, part):
-        """Give the page a further part, above the others; return the button that shows it."""
-        button = theme.finger_button(self, '', title)
-        button.setCheckable(True)
-        column = self.widget().layout()
-        column.insertWidget(0, button, 0, Qt.AlignLeft)
-        column.insertWidget(1, part)
-        part.hide()
-        button.toggled.connect(part.setVisible)
-        return button
-
-    def show_choices(self, layout, theme_name, numbers):
-        """Show what is in force."""
-        self._layouts[layout].setChecked(True)
-        self._themes[theme_name].setChecked(True)
+    def show_choices(self, layout, theme_name, numbers, percent):
+        """Show the current settings; ``percent`` is the text size."""
+        for combo, key in ((self.layout_choice, layout), (self.theme_choice, theme_name),
+                           (self.text_choice, percent)):
+            combo.setCurrentIndex(combo.findData(key))
         self.numbers_box.setChecked(numbers)

@@ -1,113 +1,130 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What lies over a window that is not drawn any more: nobody shall take an old picture for now."""
+"""A cover for a window that is no longer drawn, so that an old picture does not look current."""
 import time
 
-from python_qt_binding.QtCore import QEvent, QRectF, Qt, QTimer
-from python_qt_binding.QtGui import QFontMetricsF, QPainter, QPalette, QPen
+from python_qt_binding.QtCore import QEvent, QPoint, QRect, QRectF, Qt, QTimer
+from python_qt_binding.QtGui import QFontMetricsF, QPainter, QPalette, QPen, QRegion
 from python_qt_binding.QtWidgets import QWidget
 
 from mhri.base.gui import theme, words
 from mhri.base.text import tidy_text
 
-# It looks so often, and shows after so long: within 1 s.
+# Interval of the checks, and age at which the cover appears: together less than 1 s.
 LOOK_MS = 200
 OLD_AFTER_S = 0.6
-# A part that could not be painted is told for so long after the last time.
+# A failure to paint a part is shown for this long after its last occurrence.
 SLIP_SHOWN_S = 2.0
 _HATCH_UNITS = 3.0
-# Of the size of the words; the first line is larger. A small tile takes a smaller size.
+# Scales of the text size; the first line is larger. Small tiles use a smaller scale.
 _SCALES = (1.0, 0.85, 0.7, 0.55)
 _WRAPPED = int(Qt.AlignLeft | Qt.AlignTop | Qt.TextWordWrap)
-_MOST_PX = 10000.0
+_MAX_PX = 10000.0
 
 
 class StaleCover(QWidget):
-    """Lies over a whole window and lets every click through: STOP ALL stays in reach.
+    """Covers a whole window and passes clicks through, so that STOP ALL stays in reach.
 
-    It begins with the first :meth:`drawn`; a window that is hidden is not old.
+    Of a widget inside a covered window the cover stays hidden: one banner says it for all.
+    It becomes active with the first :meth:`drawn`; a hidden window does not count as old.
 
-    :param over: the window or widget
-    :param clock: seconds, monotonic
+    :param over: the window or widget to cover
+    :param clock: function that returns time [s, monotonic]
+    :param clear: a widget in it that still works: nothing is painted over it
     """
 
-    def __init__(self, over, clock=time.monotonic):
+    def __init__(self, over, clock=time.monotonic, clear=None):
         super().__init__(over)
-        self._clock = clock
+        self._clock, self._clear = clock, clear
         self._drawn_at = None
         self._slipped_at = None
         self._reason = ''
         self._build()
 
     def _build(self):
-        """Make the timer, and follow the size of what is below."""
+        """Create the timer, and follow the size of the covered widget."""
         self.setObjectName('stale_cover')
-        # STOP ALL below it can be pressed all the same.
+        # STOP ALL below the cover stays usable.
         self.setAttribute(Qt.WA_TransparentForMouseEvents)
         self.setFocusPolicy(Qt.NoFocus)
         self.hide()
-        self._timer = QTimer(self)
-        self._timer.setInterval(LOOK_MS)
-        self._timer.timeout.connect(self.look)
+        self._timer = QTimer(self, interval=LOOK_MS, timeout=self.refresh)
         self.parentWidget().installEventFilter(self)
 
     def drawn(self):
-        """Take note that the window was drawn whole."""
+        """Handle a complete drawing of the window."""
         self._drawn_at = self._clock()
         if not self._timer.isActive():
             self._timer.start()
         if self.isVisible():
-            self.look()
+            self.refresh()
 
     def failed(self, reason):
-        """Keep why the window could not be drawn."""
+        """Handle a failure to draw the window."""
         self._reason = tidy_text(reason)
         if self._drawn_at is None:
             self._drawn_at = self._clock() - OLD_AFTER_S
             self._timer.start()
 
     def slipped(self, reason):
-        """Take note that a part of it could not be painted, though the rest is."""
+        """Handle a failure to paint a part of the window."""
         self._slipped_at = self._clock()
         self.failed(reason)
 
     def end(self):
-        """Look no more: nothing will be drawn from now on."""
+        """Stop checking, when nothing will be drawn any more."""
         self._timer.stop()
         self.hide()
 
-    def look(self):
-        """Show or hide, as it has to be now."""
-        now = self._clock()
-        old = self._drawn_at is not None and now - self._drawn_at >= OLD_AFTER_S
-        slipped = self._slipped_at is not None and now - self._slipped_at < SLIP_SHOWN_S
-        if old or slipped:
+    def refresh(self):
+        """Show or hide the cover, depending on the time of the last drawing."""
+        if self.is_due() and not self._is_covered():
             self.setGeometry(self.parentWidget().rect())
             self.raise_()
             self.show()
             self.update()
-        else:
+        elif self.isVisible() or not self.is_due():
             self._reason = ''
             self.hide()
 
+    def is_due(self):
+        """Return whether the widget shows something old, or a part of it was not painted."""
+        now = self._clock()
+        return self._drawn_at is not None and now - self._drawn_at >= OLD_AFTER_S or \
+            self._slipped_at is not None and now - self._slipped_at < SLIP_SHOWN_S
+
+    def _is_covered(self):
+        """Return whether a widget around the covered one is covered, too, in the same window."""
+        widget = self.parentWidget()
+        while widget is not None and not widget.isWindow():
+            widget = widget.parentWidget()
+            cover = widget and widget.findChild(
+                StaleCover, options=Qt.FindDirectChildrenOnly)
+            if cover and cover.is_due():
+                return True
+        return False
+
     def texts(self):
-        """Return the lines that it shows."""
+        """Return the displayed lines."""
         age_s = 0.0 if self._drawn_at is None else self._clock() - self._drawn_at
-        lines = ['THIS SCREEN STANDS STILL',
-                 'What it shows is {} old. STOP ALL works all the same.'.format(
+        lines = ['SCREEN FROZEN',
+                 'What it shows is {} old. STOP ALL still works.'.format(
                      words.age_text(age_s))] if age_s >= OLD_AFTER_S else \
-            ['A PART OF THIS SCREEN IS NOT DRAWN', 'What is seen there may be old.']
+            ['A PART OF THIS SCREEN IS NOT DRAWN', 'It may show old data.']
         return lines + [self._reason] if self._reason else lines
 
     def eventFilter(self, watched, event):  # noqa: N802
-        """Stay as large as what is below."""
+        """Follow the size of the covered widget."""
         if event.type() == QEvent.Resize and self.isVisible():
             self.setGeometry(self.parentWidget().rect())
         return False
 
     def paintEvent(self, event):  # noqa: N802
-        """Paint stripes over everything, and the words on a ground of their own at the top."""
+        """Paint stripes over everything, and the text on its own background at the top."""
         painter = QPainter(self)
+        if self._clear is not None:
+            painter.setClipRegion(QRegion(self.rect()) - QRegion(QRect(
+                self._clear.mapTo(self.parentWidget(), QPoint()), self._clear.size())))
         ink, unit = theme.colour(theme.STOP, self.palette()), self.fontMetrics().height()
         painter.setPen(QPen(ink, 2))
         step = max(8, round(_HATCH_UNITS * unit))
@@ -129,10 +146,11 @@ class StaleCover(QWidget):
 
     def _font(self, row, scale):
         """Return the font of a line."""
-        return theme.larger(self.font(), scale * (1.3 if row == 0 else 1.0), bold=row == 0)
+        return theme.larger(
+            self.font(), scale * (theme.TITLE if row == 0 else theme.BODY), bold=row == 0)
 
     def _rows(self, unit):
-        """Return (font, where, text) of each line, below each other, broken where it is narrow."""
+        """Return (font, rectangle, text) of each line, from top to bottom, wrapped if narrow."""
         found, top, width = [], 0.6 * unit, self.width() - 5.0 * unit
         texts = self.texts()
         scale = next((scale for scale in _SCALES if theme.text_width(
@@ -141,9 +159,9 @@ class StaleCover(QWidget):
             font = self._font(row, scale)
             metrics = QFontMetricsF(font)
             if row > 1:
-                # Why it failed is for whoever mends it: it is in the log, too.
+                # The reason is for developers and also in the log.
                 line = metrics.elidedText(line, Qt.ElideRight, width)
-            room = metrics.boundingRect(QRectF(4 * unit, top, width, _MOST_PX), _WRAPPED, line)
+            room = metrics.boundingRect(QRectF(4 * unit, top, width, _MAX_PX), _WRAPPED, line)
             found.append((font, QRectF(4 * unit, top, width, room.height() + 1.0), line))
             top += room.height() + 0.2 * unit
         return found

@@ -1,23 +1,24 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A window around a tile that was torn off the screen, for a second monitor."""
+"""A window around a torn-off tile, for a second monitor."""
 from python_qt_binding.QtCore import Qt, Signal
-from python_qt_binding.QtWidgets import QVBoxLayout, QWidget
+from python_qt_binding.QtWidgets import QWidget
 
 from mhri.base.gui.geometry import fitting
+from mhri.base.gui.layouts import in_column, TIGHT
 from mhri.driving.gui.drive_keys import mark_drive_area
 
 
 class TornOff(QWidget):
-    """Holds one tile; opening it never takes the keyboard away from what has it.
+    """The window of one tile; opening it never takes the keyboard focus.
 
-    Closing it by its frame is closing a robot's window: the owner stops driving that robot, and
-    puts the tile back. Escape does not close it.
+    If the user closes it, the owner stops driving that robot and puts the tile back. Escape does
+    not close it.
 
-    :param tile: :class:`mhri.screen.gui.bot_window.BotWindow`
+    :param tile: :class:`mhri.screen.gui.robot_tile.RobotTile`
     """
 
-    #: it was closed by its frame: name of its robot
+    #: the user closed the window: name of its robot
     closed = Signal(str)
 
     def __init__(self, tile):
@@ -26,29 +27,27 @@ class TornOff(QWidget):
         self._build()
 
     def _build(self):
-        """Take the tile in."""
+        """Move the tile into the window."""
         self.setObjectName('torn_off_' + self.tile.name)
         self.setWindowTitle('{} - mhri'.format(self.tile.name))
         self.setAttribute(Qt.WA_ShowWithoutActivating)
         mark_drive_area(self, self.tile.parentWidget())
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
         self.setPalette(self.tile.palette())
         self.setFont(self.tile.font())
         self.resize(fitting(self.tile.sizeHint()))
-        column.addWidget(self.tile)
+        in_column(self.tile, of=self, margins=TIGHT)
         self.tile.show_torn_off(True)
         self.tile.show_large(True)
         self.tile.show()
 
     def give_back(self):
-        """Let the tile go; the window is of no more use."""
+        """Release the tile and delete the window."""
         self.tile.show_torn_off(False)
         self.tile.setParent(None)
         self.hide()
         self.deleteLater()
 
     def closeEvent(self, event):  # noqa: N802
-        """Tell that the window closes."""
+        """Emit ``closed``."""
         event.accept()
         self.closed.emit(self.tile.name)

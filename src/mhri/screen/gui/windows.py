@@ -1,12 +1,12 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Which window of mhri a robot gets: the ``window`` key of its type, looked up in one table."""
+"""The classes of tiles, by the ``window`` key of a robot's type."""
 from mhri.driving.gui.motion_dial import MotionDial
-from mhri.screen.gui.bot_window import BotWindow
+from mhri.screen.gui.robot_tile import RobotTile
 
 
-class TurtleBotWindow(BotWindow):
-    """A robot with a differential drive: the base window with a picture of its motion."""
+class TurtleBotWindow(RobotTile):
+    """The tile of a robot with a differential drive, with a dial of its motion."""
 
     def _build(self, ui_dir, type_label):
         """Add the dial."""
@@ -15,19 +15,19 @@ class TurtleBotWindow(BotWindow):
         self.dial_place.layout().addWidget(self.dial)
 
     def _show_numbers(self, view):
-        """Show the dial's part, too."""
+        """Update the dial, too."""
         super()._show_numbers(view)
         self.dial.show_view(view)
 
 
 STANDARD = 'turtlebot'
-# A further type of window is a further row.
+# One row per tile class.
 _WINDOWS = {STANDARD: TurtleBotWindow}
 
 
 def window_class(key):
-    """Return the class of a type's ``window`` key; an unknown key gets the window all have.
+    """Return the class of a type's ``window`` key, the base class for an unknown key.
 
-    Classes of a lab's own packages (``package.module.Class``): see ``window_maker``.
+    For classes of a lab's own packages (``package.module.Class``) see ``window_maker``.
     """
-    return _WINDOWS.get(key, BotWindow)
+    return _WINDOWS.get(key, RobotTile)

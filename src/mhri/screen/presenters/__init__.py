@@ -1,3 +1,3 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The few modules that join the ROS side and the widgets."""
+"""The modules that join the ROS side and the widgets."""

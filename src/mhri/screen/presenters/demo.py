@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A scripted drive without hands, with the real panel, buttons, keys and stick.
+"""A scripted drive with the real panel, buttons, keys and stick.
 
-Looks for robots, selects two of four, drives both, changes the selection while they move, and
-stops all. Then two of them patrol, one is driven and one follows it, on the map. It waits for what
-the robots' own odometry shows, never for a fixed time, and ends at the first step that fails.
+Finds the robots, selects two of four, drives both, changes the selection while they move, and
+stops all. Then two of them patrol, one is driven and one follows it, on the map. Each step waits
+for a condition, such as motion by odometry, never for a fixed time; the first failure ends it.
 """
 from concurrent.futures import ThreadPoolExecutor
 import math
@@ -13,26 +13,26 @@ import time
 
 from python_qt_binding.QtCore import QObject, QPoint, Qt, QTimer
 
-from mhri.base.view_rows import PICTURES, RGB
+from mhri.base.view_rows import CAMERAS, RGB
 from mhri.base.views import LIVE, PROOF_STOPPED
 from mhri.driving.gui.hands import CENTRE, DemoFailed, Errand, Grip, Hands, READY
 from mhri.screen.gui.stale_cover import StaleCover
 
 POLL_MS = 50
-PATIENCE_S = 60.0
-# Where two of them patrol [m], in the hall of the simulated building.
+TIMEOUT_S = 60.0
+# Patrol routes of two robots [m], in the hall of the simulated building.
 ROUTES = (((10.0, 0.8), (8.0, 0.8)), ((5.2, 1.0), (3.4, 1.0)))
 
 
-class Diary:
-    """What each robot did, from its own odometry: path [m], turning [rad], fastest [m/s]."""
+class MotionStatistics:
+    """The motion of each robot, from its odometry: path [m], turning [rad], top speed [m/s]."""
 
     def __init__(self):
         self._last = {}
         self.robots = {}
 
     def note(self, views):
-        """Take in the :class:`RobotView` of all robots."""
+        """Handle the :class:`RobotView` of all robots."""
         for view in views:
             if view.x_m is None:
                 continue
@@ -48,7 +48,7 @@ class Diary:
             self._last[view.name] = view
 
     def lines(self):
-        """Return one sentence for each robot."""
+        """Return one sentence per robot."""
         return ['{} ({}): drove {:.2f} m, turned {:.0f} deg, at most {:.2f} m/s; {}'.format(
             name, entry['type'], entry['path'], math.degrees(entry['turned']), entry['top'],
             entry['stop'] or 'no stop') for name, entry in sorted(self.robots.items())]
@@ -58,30 +58,29 @@ class Demo(QObject):
     """Plays the script on the GUI thread, one step whenever its condition is true.
 
     :param program: :class:`mhri.standalone.Standalone`
-    :param screenshot: where to write a picture of the screen while the robots move, and those of
-        parts of it (``<screenshot>_panel.png``, ...); None for none
-    :param result: where to write ``ok`` or the reason why not, or None
+    :param screenshot: path for a picture of the screen while the robots move, also the stem of
+        pictures of its parts (``<screenshot>_panel.png``, ...); None for no pictures
+    :param result: path for the result, ``ok`` or the reason of the failure, or None
     """
 
     def __init__(self, program, screenshot=None, result=None):
         super().__init__()
         self._program = program
-        self._operator = program.host.operator
-        self._hands = Hands(program.host.screen)
+        self._operator = program.presenter.operator
+        self._hands = Hands(program.presenter.screen)
         self._screenshot = screenshot
         self._result = result
-        self._diary = Diary()
+        self._statistics = MotionStatistics()
         self._script = self._steps()
         self._waiting = None
-        # Writing a picture takes longer than the stick may be silent.
+        # On a thread: writing a picture takes longer than the timeout of the stick.
         self._writer = ThreadPoolExecutor(max_workers=1)
         self._written = []
         self.exit_status = 1
-        self._timer = QTimer(self)
-        self._timer.timeout.connect(self._poll)
+        self._timer = QTimer(self, timeout=self._poll)
 
     def start(self):
-        """Begin, on all of the screen; the program ends by itself."""
+        """Maximise the window and start; the program ends by itself."""
         window = self._program.window
         window.setGeometry(window.screen().availableGeometry())
         self._timer.start(POLL_MS)
@@ -97,7 +96,7 @@ class Demo(QObject):
                            for name in names)
 
     def _reads(self, words):
-        """Return a condition: the bottom line ends with these words."""
+        """Return a condition: the status line ends with these words."""
         return lambda: self._operator.view().status.endswith(words)
 
     @staticmethod
@@ -105,36 +104,36 @@ class Demo(QObject):
         return lambda: one() and other()
 
     def _hold(self, forward, turn, condition):
-        """Return a condition that drives until another condition is true."""
+        """Return a condition that holds the stick until another condition is true."""
         return Grip(lambda: self._hands.hold_stick(forward, turn), self._hands.let_go,
                     lambda: self._operator.view().status, condition)
 
     def _found_four(self):
-        """Return a condition: four robots are live; it looks again every second until then."""
+        """Return a condition: four robots are live; the search is repeated every second."""
         return Errand(lambda: self._hands.click('look_button'), lambda: sum(
             robot.link == LIVE for robot in self._operator.view().robots) >= 4, again_s=1.0)
 
     @staticmethod
     def _views_open(tile):
-        """Return a condition: a tile's switches are below its header, and the tile is drawn."""
+        """Return a condition: a tile's switches are open below its header, and it is drawn."""
         return lambda: tile.switches.mapTo(tile, QPoint(0, 0)).y() >= tile.header.height() \
             and not any(cover.isVisible() for cover in tile.findChildren(StaleCover))
 
     def _all_drawn(self):
-        """Return a condition: no part of the screen stands still."""
+        """Return a condition: no part of the screen is covered as stale."""
         return lambda: not any(cover.isVisible() for cover in
-                               self._program.host.screen.findChildren(StaleCover))
+                               self._program.presenter.screen.findChildren(StaleCover))
 
     def _pictures_there(self):
-        """Return a condition: a picture has come in every tile that shows one."""
+        """Return a condition: every tile with a camera view has a picture."""
         return lambda: all(tile.view(RGB).picture.frame is not None
-                           for tile in self._program.host.windows.values()
-                           if tile.shown() & PICTURES)
+                           for tile in self._program.presenter.windows.values()
+                           if tile.shown() & CAMERAS)
 
     def _travelled(self, name, metres):
-        """Return a condition: the robot has driven this far from here."""
-        begun = self._diary.robots[name]['path']
-        return lambda: self._diary.robots[name]['path'] - begun >= metres
+        """Return a condition: the robot has driven this distance from now on."""
+        begun = self._statistics.robots[name]['path']
+        return lambda: self._statistics.robots[name]['path'] - begun >= metres
 
     def _stopped(self):
         """Return a condition: every robot is proven stopped."""
@@ -142,11 +141,11 @@ class Demo(QObject):
                            for robot in self._operator.view().robots)
 
     def _steps(self):
-        """Yield (what to wait for, condition)."""
+        """Yield (description, condition) of each step."""
         yield 'the mux to be there', lambda: self._operator.view().mode is not None
         yield 'four robots to be found and live', self._found_four()
         robots = self._operator.selection.robots
-        self._say('found {}'.format(', '.join(robots)))
+        self._print('found {}'.format(', '.join(robots)))
         robots = robots[:4]
         yield from self._drive_group(*robots[:3])
         yield from self._work_as_team(*robots)
@@ -154,59 +153,59 @@ class Demo(QObject):
         for path, written in self._written:
             if not written.result():
                 raise DemoFailed('cannot write the picture {}'.format(path))
-            self._say('wrote {}'.format(path))
+            self._print('wrote {}'.format(path))
 
     def _drive_group(self, one, two, three):
-        """Drive two of three robots, and another two of them."""
-        hands, host = self._hands, self._program.host
+        """Drive two of three robots, then another pair of them."""
+        hands, presenter = self._hands, self._program.presenter
         hands.click('check_' + one)
         hands.click('check_' + two)
-        yield 'the windows of both to open', lambda: {one, two} <= set(host.windows)
-        hands.click('camera_depth', host.windows[one])
-        hands.click('camera_rgb', host.windows[two])
-        self._say('selected {} and {}: driving both'.format(one, two))
+        yield 'the windows of both to open', lambda: {one, two} <= set(presenter.windows)
+        hands.click('camera_depth', presenter.windows[one])
+        hands.click('camera_rgb', presenter.windows[two])
+        self._print('selected {} and {}: driving both'.format(one, two))
         yield 'the pictures to come', self._pictures_there()
         yield 'the panel to be ready', self._reads(READY)
         yield '{} and {} to move'.format(one, two), self._hold(
             0.4, 0.0, self._both(self._travelled(one, 0.25), self._moves(one, two)))
         yield '{} to drive a bend'.format(two), self._hold(0.4, 0.35, self._travelled(two, 0.2))
-        self._take_pictures(depth=host.windows[one])
-        self._say('deselecting {} and selecting {} while they move'.format(one, three))
+        self._take_pictures(depth=presenter.windows[one])
+        self._print('deselecting {} and selecting {} while they move'.format(one, three))
         hands.click('check_' + one)
         hands.click('check_' + three)
         yield 'the panel to ask for a centred stick', self._reads(CENTRE)
         yield '{} to stand still'.format(one), self._rests(one)
-        self._say('{} does not leap: the stick must be centred first'.format(three))
+        self._print('{} does not leap: the stick must be centred first'.format(three))
         hands.let_go()
         yield 'the panel to be ready', self._reads(READY)
         yield '{} and {} to move'.format(two, three), self._hold(
             0.4, -0.35, self._both(self._travelled(three, 0.3), self._moves(two, three)))
         yield 'every tile to be drawn', self._all_drawn()
         self._take_screenshot()
-        self._take_pictures(panel=host.screen)
-        hands.click('views_button', host.windows[two])
-        yield 'the views to open', self._views_open(host.windows[two])
-        self._take_pictures(bot_window=host.windows[two])
-        hands.click('views_button', host.windows[two])
-        self._say('stop all')
+        self._take_pictures(panel=presenter.screen)
+        hands.click('views_button', presenter.windows[two])
+        yield 'the views to open', self._views_open(presenter.windows[two])
+        self._take_pictures(bot_window=presenter.windows[two])
+        hands.click('views_button', presenter.windows[two])
+        self._print('stop all')
         hands.press_stop_keys()
         yield 'every robot to be proven stopped', self._stopped()
         hands.let_go()
         yield 'every tile to say so', lambda: all(
-            tile.hud.sentence.startswith('stopped') for tile in host.windows.values()) \
+            tile.hud.sentence.startswith('stopped') for tile in presenter.windows.values()) \
             and self._all_drawn()()
-        self._take_pictures(stopped=host.screen)
+        self._take_pictures(stopped=presenter.screen)
 
     def _work_as_team(self, one, two, three, four):
         """Let two robots patrol, drive one, and have one follow it, all on the map."""
-        hands, host = self._hands, self._program.host
+        hands, presenter = self._hands, self._program.presenter
         yield 'the stop to be released', Errand(
             self._release, lambda: not self._operator.view().stop_all, again_s=1.0)
         for name in (two, three):
             hands.click('check_' + name)
         yield 'the map to be large', Errand(
-            lambda: hands.press(Qt.Key_M, 'm'), host.map.pane.isVisible)
-        scene = lambda: host.map.pane.view.scene  # noqa: E731
+            lambda: hands.press(Qt.Key_M, 'm'), presenter.parts['map'].pane.isVisible)
+        scene = lambda: presenter.parts['map'].pane.view.scene  # noqa: E731
         for name in (one, two, three, four):
             yield '{} to be on the map'.format(name), lambda name=name: scene().robot(
                 name) is not None and scene().robot(name).pose is not None
@@ -217,40 +216,41 @@ class Demo(QObject):
             yield '{} to be on its task'.format(name), Errand(
                 lambda tool=tool, places=places: self._draw(tool, places, two),
                 lambda name=name: self._task(name) is not None)
-        self._say('{} and {} patrol, {} follows {}: driving that one'.format(one, four, three, two))
+        self._print('{} and {} patrol, {} follows {}: driving that one'.format(
+            one, four, three, two))
         hands.click('check_' + two)
         yield 'the panel to be ready', self._reads(READY)
-        # In a circle to the left: away from who patrols, however long it takes.
+        # In a circle to the left, to stay clear of the patrols for any length of time.
         yield 'all four to be on their way', self._hold(0.45, 0.25, self._all_go(
             two, {one: 0.3, two: 0.8, three: 0.4, four: 0.3}))
         yield 'every tile to be drawn', self._all_drawn()
-        self._take_pictures(map=host.screen)
-        self._say('stop all')
+        self._take_pictures(map=presenter.screen)
+        self._print('stop all')
         hands.press_stop_keys()
         yield 'every robot to be proven stopped', self._stopped()
         hands.let_go()
         yield 'every task to end', lambda: not any(map(self._task, (one, two, three, four)))
 
     def _release(self):
-        """Release the stop: two buttons, the second where the first has been pressed."""
+        """Release the stop: the release button first, then the confirm button."""
         confirm = self._hands.widget('confirm_button')
         self._hands.click('confirm_button' if confirm.isVisible() else 'release_button')
 
     def _task(self, name):
-        """Return the task that a robot is on, None for none."""
-        return next((robot.task for robot in self._program.host.tasks.view.robots
+        """Return the current task of a robot, None if none."""
+        return next((robot.task for robot in self._program.presenter.parts['tasks'].view.robots
                      if robot.name == name), None)
 
     def _tap(self, name):
         """Click a robot on the map."""
-        view = self._program.host.map.pane.view
+        view = self._program.presenter.parts['map'].pane.view
         pose = view.scene.robot(name).pose
         if pose is not None:
             self._hands.tap(view, pose.x_m, pose.y_m)
 
     def _draw(self, tool, places, leader):
-        """Draw a route for the robot that is looked at, or choose its leader."""
-        view = self._program.host.map.pane.view
+        """Draw a route for the robot in view, or choose its leader."""
+        view = self._program.presenter.parts['map'].pane.view
         self._hands.click('tool_' + tool)
         if places is None:
             self._tap(leader)
@@ -260,7 +260,7 @@ class Demo(QObject):
         self._hands.click('done_button')
 
     def _all_go(self, driven, metres):
-        """Return a condition: each robot has driven so far; whose task was lost is sent on."""
+        """Return a condition: each robot has driven its distance; lost tasks are continued."""
         gone = [self._travelled(name, far_m) for name, far_m in metres.items()]
         on_task = [name for name in metres if name != driven]
         send_on = Errand(lambda: [self._hands.click('carry_on_' + name) for name in on_task
@@ -274,24 +274,24 @@ class Demo(QObject):
         return done
 
     def _poll(self):
-        """Go on if the present condition is true."""
-        self._diary.note(self._operator.view().robots)
+        """Go to the next step if the current condition is true."""
+        self._statistics.note(self._operator.view().robots)
         try:
             if self._waiting is not None:
                 what, condition, deadline = self._waiting
                 if not condition():
                     if time.monotonic() > deadline:
-                        raise DemoFailed('waited {:.0f} s for {}'.format(PATIENCE_S, what))
+                        raise DemoFailed('waited {:.0f} s for {}'.format(TIMEOUT_S, what))
                     return
             what, condition = next(self._script)
-            self._waiting = (what, condition, time.monotonic() + PATIENCE_S)
+            self._waiting = (what, condition, time.monotonic() + TIMEOUT_S)
         except StopIteration:
             self._end('ok')
         except DemoFailed as failure:
             self._end(str(failure))
 
     def _take_pictures(self, **widgets):
-        """Write a picture of each widget beside the screenshot: ``<screenshot>_<name>.png``."""
+        """Save a picture of each widget as ``<screenshot>_<name>.png``."""
         if not self._screenshot:
             return
         stem = os.path.splitext(self._screenshot)[0]
@@ -299,7 +299,7 @@ class Demo(QObject):
             self._save(widget.grab(), '{}_{}.png'.format(stem, name))
 
     def _take_screenshot(self):
-        """Write the whole window to the file asked for, as it is now: not what was painted last."""
+        """Save a picture of the whole window, rendered anew."""
         if self._screenshot:
             self._save(self._program.window.grab(), self._screenshot)
 
@@ -307,11 +307,11 @@ class Demo(QObject):
         self._written.append((path, self._writer.submit(picture.toImage().save, path, 'PNG')))
 
     def _end(self, result):
-        """Print what happened, write the result, and close the program."""
+        """Print a summary, write the result, and close the program."""
         self._timer.stop()
-        for line in self._diary.lines():
-            self._say(line)
-        self._say('demo: {}'.format(result))
+        for line in self._statistics.lines():
+            self._print(line)
+        self._print('demo: {}'.format(result))
         self.exit_status = 0 if result == 'ok' else 1
         if self._result:
             with open(self._result, 'w', encoding='utf-8') as stream:
@@ -319,5 +319,5 @@ class Demo(QObject):
         self._program.window.close_now()
 
     @staticmethod
-    def _say(text):
+    def _print(text):
         print(text, flush=True)

@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The guard of everything that draws: it logs failures once a second and shows them.
+"""A guard around all drawing: it shows failures and logs them at most once a second.
 
 PyQt ends the program if an exception leaves a slot or an event handler, unless an ``excepthook``
 is set (https://www.riverbankcomputing.com/static/Docs/PyQt5/incompatibilities.html).
-A screen that draws badly must go on: its STOP ALL does not need the drawing.
+A screen that fails to draw must go on, because STOP ALL works without drawing.
 """
 import math
 import sys
@@ -22,20 +22,20 @@ _COVERS = weakref.WeakSet()
 
 
 def _note_slip(kind, value, trace):
-    """Take note of an uncaught exception, e.g. from painting."""
+    """Log an uncaught exception, e.g. from painting, and show it on all covers."""
     log_slips(kind, value, trace)
     for cover in list(_COVERS):
         try:
             cover.slipped('{}: {}'.format(kind.__name__, value))
-        except RuntimeError:  # Qt has deleted it
+        except RuntimeError:  # deleted by Qt
             _COVERS.discard(cover)
 
 
 def watch_slips():
     """Show uncaught exceptions on the screen, and log each once.
 
-    Earlier hooks still run, except Python's own and pyqtgraph's, which print every exception:
-    failing to paint would print thousands.
+    Earlier hooks still run, except Python's own and pyqtgraph's: they print every exception, which
+    would be thousands if painting fails.
     """
     before = sys.excepthook
     if getattr(before, 'of_mhri', False):
@@ -54,12 +54,13 @@ class DrawGuard:
     """Draws one window, and covers it while drawing fails.
 
     :param window: the window or widget that is drawn
+    :param clear: a widget in it that works even so: the cover leaves it out
     """
 
-    def __init__(self, window):
+    def __init__(self, window, clear=None):
         self._name = window.objectName()
         self._logged_at = -math.inf
-        self.cover = StaleCover(window)
+        self.cover = StaleCover(window, clear=clear)
         _COVERS.add(self.cover)
         watch_slips()
 
@@ -69,7 +70,7 @@ class DrawGuard:
             job(*args)
         except KeyboardInterrupt:
             raise
-        except BaseException as error:  # the guard of this boundary: see the head of this file
+        except BaseException as error:  # see the docstring of this module
             reason = '{}: {}'.format(type(error).__name__, error)
             self.cover.failed(reason)
             self._log(reason)
@@ -78,11 +79,11 @@ class DrawGuard:
         return True
 
     def _log(self, reason):
-        """Log the present exception, unless one was logged just now."""
+        """Log the current exception, at most once a second."""
         now = time.monotonic()
         if now - self._logged_at >= LOG_EVERY_S:
             self._logged_at = now
-            # Without rospy's own throttle, which needs a node: there may be none yet.
+            # Not with rospy's throttle, which needs an initialised node.
             rospy.logerr('cannot draw %s: %s\n%s', self._name, reason[:500],
                          traceback.format_exc(limit=-6)[-2000:])
 

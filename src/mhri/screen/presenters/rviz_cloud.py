@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""RViz's own widget in place of a drawn cloud, if rviz and its Python binding are installed.
+"""RViz's own widget as an alternative cloud view, if rviz and its Python binding are installed.
 
 Sources for the binding: rviz_python_tutorial/myviz.py and src/python_bindings/sip of rviz
 (Noetic). It needs a GPU or a software OpenGL, and subscribes to the cloud itself.
@@ -9,20 +9,20 @@ from importlib import import_module
 from importlib.util import find_spec
 import json
 
-# rviz is loaded only on request: that takes a second or more, and much memory.
+# Loaded only on request: it takes a second or more, and much memory.
 _PACKAGE, _BINDING = 'rviz', 'rviz.bindings'
 
 
 def is_installed():
-    """Tell whether Python finds a package ``rviz``; it may still fail to load."""
+    """Return whether the package ``rviz`` is found; loading it may still fail."""
     return find_spec(_PACKAGE) is not None
 
 
 def config_text(topic, frame_id):
-    """Return the configuration of an RViz that shows one cloud, as YAML (of which JSON is a part).
+    """Return an RViz configuration that shows one cloud, in JSON, a subset of YAML.
 
-    :param topic: of type ``sensor_msgs/PointCloud2``
-    :param frame_id: of the cloud, in which it is shown, so that no tf is needed
+    :param topic: topic of type ``sensor_msgs/PointCloud2``
+    :param frame_id: frame of the cloud, also the fixed frame, so that no tf is needed
     """
     displays = [
         {'Class': 'rviz/Grid', 'Name': 'Grid', 'Enabled': True},
@@ -34,9 +34,9 @@ def config_text(topic, frame_id):
 
 
 def make_frame(topic, frame_id):
-    """Return RViz's widget with one cloud and nothing around it (on the GUI thread, slow).
+    """Return RViz's widget with one cloud, without menus or bars (on the GUI thread, slow).
 
-    :raises Exception: whatever the binding raises if it cannot be loaded or cannot draw
+    :raises Exception: any error of the binding on loading or drawing
     """
     rviz = import_module(_BINDING)
     frame = rviz.VisualizationFrame()
@@ -52,10 +52,10 @@ def make_frame(topic, frame_id):
 
 
 class RvizCloud:
-    """Offers RViz in a view of clouds, and switches when it is chosen.
+    """Offers RViz in a cloud view, and switches on request.
 
     :param view: :class:`mhri.sensors.gui.cloud_view.CloudView`
-    :param feed: :class:`mhri.sensors.ros.cloud_feed.CloudFeed`, whose topic RViz should show
+    :param feed: :class:`mhri.sensors.ros.cloud_feed.CloudFeed` with the topic for RViz
     """
 
     def __init__(self, view, feed):
@@ -65,11 +65,11 @@ class RvizCloud:
         view.offer_rviz(is_installed())
 
     def _on_chosen(self, chosen):
-        """Switch, or say why not."""
+        """Switch, or show the reason for a failure."""
         if not chosen:
             self._view.show_instead(None)
             return
-        topic = self._feed.topic()
+        topic = self._feed.cloud_topic
         if not topic or self._view.frame_id is None:
             self._view.refuse_rviz('RViz shows clouds as sent: none has come yet')
             return

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The panel's ``/diagnostics``: its robots' links, and whom it did not believe."""
+"""The panel's ``/diagnostics``: links of robots, and rejected senders."""
 from diagnostic_msgs.msg import DiagnosticStatus
 
 from mhri.base.views import LIVE
@@ -11,21 +11,21 @@ class PanelDiagnostics:
     """Publishes ``diagnostic_msgs/DiagnosticArray`` on ``/diagnostics`` at 1 Hz.
 
     :param operator: :class:`mhri.screen.ros.backend.ScreenBackend`
-    :param clients: the clients of gates and mux, whose ``strangers`` were not believed
+    :param strangers: :class:`mhri.graph.ros.service_owner.RejectedSenders`
     """
 
-    def __init__(self, operator, *clients):
+    def __init__(self, operator, strangers):
         self._operator = operator
-        self._clients = clients
+        self._strangers = strangers
         self._done = None
 
     def start(self):
-        """Begin publishing, on a thread of its own."""
+        """Start to publish, on its own thread."""
         self._done = publish_diagnostics({'robots': self._robots})
         return self
 
     def stop(self):
-        """End; returns at once."""
+        """Stop; return at once."""
         self._done.set()
 
     def _robots(self, status):
@@ -44,7 +44,6 @@ class PanelDiagnostics:
             feeds = self._operator.feeds(view.name)
             for words, count in sorted(feeds.refused().items()) if feeds else ():
                 status.add('{}: {} refused'.format(view.name, words), count)
-        for client in self._clients:
-            for words in client.strangers.words():
-                status.add('not believed', words)
+        for words in self._strangers.words():
+            status.add('rejected', words)
         return status

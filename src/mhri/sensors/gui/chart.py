@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""One scrolling chart: a line of words with its legend, and the curves below it."""
+"""One scrolling chart: a line with caption and legend, and the curves below it."""
 import math
 from typing import NamedTuple, Tuple
 
@@ -8,26 +8,26 @@ import numpy as np
 import pyqtgraph
 from python_qt_binding.QtCore import QEvent, QSize, Qt
 from python_qt_binding.QtGui import QColor, QPainter, QPalette, QPen
-from python_qt_binding.QtWidgets import QSizePolicy, QVBoxLayout, QWidget
+from python_qt_binding.QtWidgets import QSizePolicy, QWidget
 
 from mhri.base.gui import theme, words
+from mhri.base.gui.layouts import in_column, TIGHT
 from mhri.base.gui.pending import Pace
 from mhri.base.series import AxisRange, round_step
 
-VALUES_PERIOD_S = 0.25
 PAUSED = 'PAUSED   '
 # Blue, reddish purple and bluish green of Okabe and Ito: orange and vermillion mean something else
 # here. Each has a stroke of its own as well (lengths in widths of the line).
 _INKS = (('#0072B2', '#56B4E9'), ('#CC79A7', '#CC79A7'), ('#009E73', '#009E73'))
 _DASHES = ((), (6.0, 2.0), (2.0, 1.5))
 _TICK_STEPS_S = {5: 1, 10: 2, 20: 5, 30: 10, 60: 10}
-# Room at both ends for half a word below the axis, in parts of the time on show.
+# Room at both ends for half a label of the axis, as a share of the displayed time.
 _END_ROOM = 0.07
 _GRID_ALPHA = 60
 
 
 class Trace(NamedTuple):
-    """One curve: its key in the series, its name in the legend, and which stroke it has."""
+    """One curve: its key in the series, its name in the legend, and its stroke."""
 
     key: str
     label: str
@@ -35,7 +35,7 @@ class Trace(NamedTuple):
 
 
 class Plot(NamedTuple):
-    """What a chart shows: caption with unit, least half range, factor from SI, and its curves.
+    """The content of a chart: caption with unit, minimum half range, factor from SI, and curves.
 
     The curve named last lies on top.
     """
@@ -64,7 +64,7 @@ def value_text(value):
 
 
 class _Fit(NamedTuple):
-    """How much of a legend is shown: stroke and gap in heights of a line, and which parts."""
+    """The layout of a legend: stroke and gap in heights of a line, and the parts shown."""
 
     stroke: float
     gap: float
@@ -83,51 +83,43 @@ class Legend(QWidget):
     def __init__(self, parent=None):
         super().__init__(parent)
         self._plot = None
-        self._texts = ()
+        #: the newest values, as shown
+        self.texts = ()
         self._paused = False
-        self._old = False
+        #: whether the newest values are old
+        self.old = False
         self.setSizePolicy(QSizePolicy.MinimumExpanding, QSizePolicy.Fixed)
-
-    @property
-    def texts(self):
-        """The newest values on show."""
-        return self._texts
 
     def show_plot(self, plot):
         """Show the names of another :class:`Plot`."""
-        self._plot, self._texts = plot, (words.UNKNOWN,) * len(plot.traces)
+        self._plot, self.texts = plot, (words.UNKNOWN,) * len(plot.traces)
         self.setToolTip('{}: {}'.format(
             plot.caption, ', '.join(trace.label for trace in plot.traces)))
         self.updateGeometry()
         self.update()
 
     def show_paused(self, paused):
-        """Say that the curves stand still."""
+        """Show whether the curves are paused."""
         self._paused = paused
         self.update()
 
-    @property
-    def old(self):
-        """Whether the newest values are not those of now."""
-        return self._old
-
     def show_old(self, old):
-        """Say whether the newest values are old: the robot is not heard any more."""
-        if old != self._old:
-            self._old = old
+        """Mark the newest values as old: the robot has fallen silent."""
+        if old != self.old:
+            self.old = old
             self.update()
 
     @property
     def shown(self):
-        """What there is room for: of 'caption', 'names' and 'values'."""
+        """The parts that fit, out of 'caption', 'names' and 'values'."""
         fit = self._fit()
         return tuple(part for part in ('caption', 'names', 'values') if getattr(fit, part))
 
     def show_values(self, values):
         """Show the newest value of each curve."""
         texts = tuple(value_text(value) for value in values)
-        if texts != self._texts:
-            self._texts = texts
+        if texts != self.texts:
+            self.texts = texts
             self.update()
 
     def _names_width(self):
@@ -135,7 +127,7 @@ class Legend(QWidget):
         return self._width(_AMPLE) - len(self._plot.traces) * self._value_width(_AMPLE)
 
     def _value_width(self, fit):
-        """Return the width of a value and the gap after it; 0 where there is none."""
+        """Return the width of a value and the gap after it; 0 if values are hidden."""
         metrics = self.fontMetrics()
         return metrics.horizontalAdvance('-00.00') + round(fit.gap * metrics.height()) \
             if fit.values else 0
@@ -149,23 +141,23 @@ class Legend(QWidget):
                    for trace in self._plot.traces)
 
     def _caption(self, fit):
-        """Return the caption, or of it the unit alone."""
+        """Return the caption, or only its unit."""
         caption = self._plot.caption if fit.caption else \
             self._plot.caption.rpartition('[')[2].rstrip(']')
         return PAUSED + caption if self._paused else caption
 
     def _fit(self):
-        """Return the most ample :class:`_Fit` that there is room for."""
+        """Return the widest :class:`_Fit` that fits."""
         gap = self.fontMetrics().height() // 2
         for fit in (_AMPLE, _TIGHT, _TIGHT._replace(caption=False),
-                    _TIGHT._replace(caption=False, names=False)):
+                    _TIGHT._replace(caption=False, names=False), _AMPLE._replace(values=False)):
             if self._width(fit) + gap + self.fontMetrics().horizontalAdvance(
                     self._caption(fit)) <= self.width():
                 return fit
-        return _AMPLE._replace(values=False)
+        return _TIGHT._replace(caption=False, names=False, values=False)
 
     def sizeHint(self):  # noqa: N802
-        """Return the room for caption and names; the values need not be there."""
+        """Return the size for caption and names; the values are optional."""
         metrics = self.fontMetrics()
         width = self._names_width() + metrics.horizontalAdvance(self._plot.caption) \
             if self._plot else 0
@@ -174,19 +166,19 @@ class Legend(QWidget):
     minimumSizeHint = sizeHint
 
     def paintEvent(self, event):  # noqa: N802
-        """Paint caption and legend; where there is little room, the values are the last to go."""
+        """Paint caption and legend; with little room, the values are the last to be hidden."""
         if self._plot is None:
             return
         painter, fit = QPainter(self), self._fit()
         metrics, unit, middle = self.fontMetrics(), self.fontMetrics().height(), self.height() // 2
         ink, muted = (theme.colour(name, self.palette()) for name in (
-            theme.MUTED if self._old else theme.TEXT, theme.MUTED))
+            theme.MUTED if self.old else theme.TEXT, theme.MUTED))
         base = (self.height() + metrics.ascent() - metrics.descent()) // 2
         gap, stroke = round(fit.gap * unit), round(fit.stroke * unit)
         painter.setPen(theme.colour(theme.TEXT, self.palette()))
         painter.drawText(0, base, self._caption(fit))
         x = self.width() - self._width(fit)
-        for trace, text in zip(self._plot.traces, self._texts):
+        for trace, text in zip(self._plot.traces, self.texts):
             painter.setPen(trace_pen(trace.stroke, self.palette(), 3))
             painter.drawLine(x + gap, middle, x + gap + stroke, middle)
             x += 2 * gap + stroke
@@ -202,9 +194,9 @@ class Legend(QWidget):
 
 
 class _Frame(pyqtgraph.GraphicsWidget):
-    """Places the axes beside the curves, each with a fixed width: the curves never jump.
+    """Places the axes beside the curves, each with a fixed width, so that the curves never jump.
 
-    No layout of the graphics view does it, because Qt makes a hidden window for each of those.
+    It does without a layout of the graphics view, for each of which Qt makes a hidden window.
     """
 
     def __init__(self, box, left, bottom):
@@ -215,17 +207,17 @@ class _Frame(pyqtgraph.GraphicsWidget):
             part.setParentItem(self)
 
     def give(self, left_px=None, bottom_px=None):
-        """Give the axes so much room; None leaves it as it is."""
+        """Set the room of the axes; None leaves it unchanged."""
         self._left_px = self._left_px if left_px is None else left_px
         self._bottom_px = self._bottom_px if bottom_px is None else bottom_px
         _, left, bottom = self._parts
-        # Otherwise they take what their numbers need at the moment.
+        # Otherwise their size would follow their present numbers.
         left.setWidth(self._left_px)
         bottom.setHeight(self._bottom_px)
         self._place()
 
     def _place(self):
-        """Place the parts anew."""
+        """Place axes and curves."""
         box, left, bottom = self._parts
         width, height = self.size().width() - self._left_px, self.size().height() - self._bottom_px
         left.setGeometry(0.0, 0.0, self._left_px, height)
@@ -238,7 +230,7 @@ class _Frame(pyqtgraph.GraphicsWidget):
 
 
 class Chart(QWidget):
-    """Curves over the seconds before now, drawn when they are given and at no other time."""
+    """Curves over the last seconds, redrawn only when a new series is given."""
 
     def __init__(self, parent=None):
         super().__init__(parent)
@@ -248,13 +240,13 @@ class Chart(QWidget):
         self._curves = []
         self._range = AxisRange(1.0)
         self._limits = None
-        self._values = Pace(VALUES_PERIOD_S)
+        self._values = Pace()
         self._build()
 
     def _build(self):
-        """Make the plot; it takes neither mouse nor keyboard."""
+        """Make the plot, which ignores mouse and keyboard."""
         self.legend = Legend(self)
-        # Of parts, since a whole PlotWidget brings menus along: hidden windows that outlive it.
+        # Made of parts, since a PlotWidget has menus: hidden windows that outlive it.
         self.view = pyqtgraph.GraphicsView(self)
         self.view.setFocusPolicy(Qt.NoFocus)
         self.view.setAttribute(Qt.WA_TransparentForMouseEvents)
@@ -270,22 +262,18 @@ class Chart(QWidget):
             axis.setGrid(_GRID_ALPHA)
         self._frame = _Frame(self.box, self._left, self._bottom)
         self.view.setCentralItem(self._frame)
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.setSpacing(0)
-        column.addWidget(self.legend)
-        column.addWidget(self.view, 1)
+        in_column(self.legend, (self.view, 1), of=self, margins=TIGHT, gap=0)
 
     def show_plot(self, plot):
         """Show another :class:`Plot`, empty until the next series."""
         self._plot = plot
         self._range = AxisRange(plot.least)
         self._limits = None
-        self._values = Pace(VALUES_PERIOD_S)
+        self._values = Pace()
         self.legend.show_plot(plot)
         for curve in self._curves:
             self.box.removeItem(curve)
-        # Smooth lines of noise cost four times as much: three of them would be felt elsewhere.
+        # Antialiased noise takes four times as long: three such curves would slow the screen down.
         self._curves = [pyqtgraph.PlotCurveItem(connect='finite', antialias=len(plot.traces) < 3)
                         for _ in plot.traces]
         for curve in self._curves:
@@ -293,7 +281,7 @@ class Chart(QWidget):
         self._restyle()
 
     def set_window(self, window_s, with_times=True):
-        """Show so many seconds; with the times below, or without where another chart has them."""
+        """Set the time span [s], with the times below unless another chart shows them."""
         self._times = (window_s, with_times)
         step = _TICK_STEPS_S[window_s]
         end = 'end' if self._paused else 'now'
@@ -304,13 +292,13 @@ class Chart(QWidget):
         self.box.setXRange(-window_s, 0.0, padding=_END_ROOM)
 
     def show_paused(self, paused):
-        """Say that the curves stand still: they do not end now."""
+        """Show whether the curves are paused and so do not end now."""
         self._paused = paused
         self.legend.show_paused(paused)
         self.set_window(*self._times)
 
     def _mark_values(self):
-        """Put as many round numbers beside the axis as there is room for, zero among them."""
+        """Put as many round numbers beside the axis as fit, including zero."""
         low, high = self._limits
         most = max(2, round(self.view.height() / (1.7 * self.fontMetrics().height())))
         step = round_step((high - low) / most)
@@ -321,7 +309,7 @@ class Chart(QWidget):
             for index in range(first, last + 1)]])
 
     def resizeEvent(self, event):  # noqa: N802
-        """Follow with the numbers beside the axis."""
+        """Update the numbers beside the axis."""
         super().resizeEvent(event)
         if self._limits is not None:
             self._mark_values()
@@ -333,7 +321,7 @@ class Chart(QWidget):
             self._restyle()
 
     def _restyle(self):
-        """Take over colours and fonts of the palette and the font in force."""
+        """Apply the colours and fonts of the present palette and font."""
         palette = self.palette()
         self.view.setBackground(palette.color(QPalette.Base))
         ink = theme.colour(theme.MUTED, palette)

@@ -1,40 +1,40 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Draws clouds beside the GUI thread, which a large one would hold up: newest wish only."""
+"""Draws clouds off the GUI thread, which a large one would block: only the newest request."""
 import threading
 
 from mhri.sensors.cloud_picture import CloudArtist
 
 
 class CloudDrawing:
-    """One view's drawings, on a thread that is there while there is something to draw.
+    """The drawings of one view, on a thread that exists only while there is something to draw.
 
-    The thread touches nothing of Qt: a signal of it would take the program down where the
-    application is gone by then. The end of the program waits for it, some hundredths of a second:
-    a thread that is cut off within OpenCV does the same.
+    The thread does not touch Qt: a signal emitted after the end of the application would crash the
+    program. The program waits for the thread at its end, some hundredths of a second, since a
+    thread killed within OpenCV crashes it as well.
     """
 
     def __init__(self):
         self._lock = threading.Lock()
-        self._wish = None
+        self._next = None
         self._done = None
         self._running = False
         self._artist = CloudArtist()
 
     def ask(self, cloud, orbit, size, colouring):
-        """Ask for a picture; one that was asked for before and is not begun is forgotten.
+        """Request a picture; it replaces a request that has not been started yet.
 
         The arguments are those of :meth:`CloudArtist.draw`.
         """
         with self._lock:
-            self._wish = (cloud, orbit, size, colouring)
+            self._next = (cloud, orbit, size, colouring)
             if not self._running:
                 self._running = True
                 threading.Thread(target=self._run, name='cloud drawing').start()
 
     @property
     def idle(self):
-        """Whether all that was asked for has been drawn or forgotten, and taken."""
+        """Whether every requested picture has been drawn and taken, or replaced."""
         with self._lock:
             return not self._running and self._done is None
 
@@ -50,15 +50,15 @@ class CloudDrawing:
         return done
 
     def _run(self):
-        """Draw what is wished for (the thread)."""
+        """Draw the requested pictures (the thread)."""
         while True:
             with self._lock:
-                wish, self._wish = self._wish, None
-                if wish is None:
+                job, self._next = self._next, None
+                if job is None:
                     self._running = False
                     return
             try:
-                done = self._artist.draw(*wish)
+                done = self._artist.draw(*job)
             except Exception as error:  # the guard of this thread
                 done = error
             with self._lock:

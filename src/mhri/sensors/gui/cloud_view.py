@@ -1,12 +1,14 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A robot's point cloud: turned by hand, coloured by choice, drawn without a GPU."""
-from python_qt_binding.QtCore import Qt, QTimer, Signal
-from python_qt_binding.QtWidgets import (
-    QComboBox, QHBoxLayout, QPushButton, QSizePolicy, QVBoxLayout, QWidget)
+"""A robot's point cloud: turned by mouse, coloured by choice, drawn without a GPU."""
+from python_qt_binding.QtCore import QTimer, Signal
+from python_qt_binding.QtWidgets import QSizePolicy
 
 from mhri.base.gui import theme, words
+from mhri.base.gui.choices import offer
+from mhri.base.gui.controls import Button, Combo
 from mhri.base.gui.labels import plain_tip, TextLine
+from mhri.base.gui.page import WithTools
 from mhri.base.gui.pending import Pace
 from mhri.camera.gui.camera_view import stream_text
 from mhri.sensors.cloud_picture import COLOUR, colourings, DISTANCE, HEIGHT, INTENSITY, upright_axes
@@ -15,14 +17,13 @@ from mhri.sensors.gui.cloud_drawing import CloudDrawing
 from mhri.sensors.orbit import fitted, read_orbit
 
 OLD_S = 1.0
-STATUS_PERIOD_S = 0.25
-# How often a drawing that is under way is looked for.
+# Period of checking for a finished drawing.
 LOOK_MS = 15
-# How long a reason stays.
+# How long the reason of a refusal is shown.
 REFUSAL_S = 6.0
 WAITING = 'waiting for the first cloud'
 NOTHING = 'nothing measured'
-# What a cloud is coloured by: key, label, unit of the scale.
+# The colourings: key, label, unit of the scale.
 _COLOURINGS = ((HEIGHT, 'Height', 'm'), (DISTANCE, 'Distance', 'm'), (INTENSITY, 'Intensity', ''),
                (COLOUR, 'Colour', ''))
 _UNITS = {key: unit for key, _, unit in _COLOURINGS}
@@ -38,33 +39,34 @@ def points_text(cloud):
         cloud.kept_of, cloud.sent)
 
 
-class CloudView(QWidget):
-    """Shows the clouds that it is given; the first one decides from where it is looked at.
+class CloudView(WithTools):
+    """Shows point clouds; the first one determines the viewpoint.
 
-    The sensor is where its axes are (orange ahead, green left, blue up), above the white circle of
-    the robot. Child widgets: ``canvas``, ``status_label``, ``colour_combo``, ``reset_button``,
+    Axes (orange ahead, green left, blue up) mark the sensor, above the white circle of the robot.
+    Child widgets: ``canvas``, ``status_label``, ``colour_combo``, ``reset_button``,
     ``rviz_button``.
     """
 
     #: the picture of a cloud has been drawn
     drawn = Signal()
-    #: the operator wants RViz's own widget instead, or no more
+    #: RViz's own widget is requested instead, or no longer
     rviz_chosen = Signal(bool)
 
     def __init__(self, parent=None):
         super().__init__(parent)
         self._cloud = None
         self._looked = False
-        self._chosen = HEIGHT
+        #: meaning of the colours, see :func:`colourings`
+        self.colouring = HEIGHT
         self._stream = ''
-        self._numbers_pace = self._status_pace = Pace(STATUS_PERIOD_S)
+        self._numbers_pace = self._status_pace = Pace()
         self._drawing = CloudDrawing()
         self._build()
         self._connect()
         self._restore()
 
     def _build(self):
-        """Make and place the parts."""
+        """Make and place the widgets."""
         self.setObjectName('cloud_view')
         self.setSizePolicy(QSizePolicy.Expanding, QSizePolicy.Expanding)
         self.canvas = CloudCanvas(self)
@@ -72,59 +74,36 @@ class CloudView(QWidget):
         self.status_label = TextLine(self)
         self.status_label.setObjectName('status_label')
         self.status_label.setFont(theme.number_font(self.font()))
-        self.colour_combo = QComboBox(self)
-        self.reset_button = QPushButton('Show all', self)
-        self.reset_button.setAutoDefault(False)
-        self.rviz_button = QPushButton('RViz', self)
-        self.rviz_button.setAutoDefault(False)
-        self.rviz_button.setCheckable(True)
+        self.colour_combo = Combo(self)
+        self.reset_button = Button('Show all', self)
+        self.rviz_button = Button('RViz', self, checkable=True)
         self.rviz_button.hide()
         self._instead = None
-        self._timer = QTimer(self)
-        self._timer.setInterval(LOOK_MS)
-        self._tools = QWidget(self)
-        line = QHBoxLayout(self._tools)
-        line.setContentsMargins(0, 4, 0, 0)
-        line.setSpacing(6)
-        line.addWidget(self.status_label, 1)
+        self._timer = QTimer(self, interval=LOOK_MS, timeout=self._look)
         for widget, name, spoken in (
                 (self.colour_combo, 'colour_combo', 'what the colours of the points mean'),
                 (self.reset_button, 'reset_button', 'look at all points, from behind the robot'),
                 (self.rviz_button, 'rviz_button', _RVIZ_HELP)):
-            widget.setObjectName(name)
-            widget.setAccessibleName(spoken)
-            widget.setToolTip(spoken)
-            widget.setFocusPolicy(Qt.TabFocus)
-            widget.setMinimumHeight(theme.touch_size(self))
-            line.addWidget(widget)
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.setSpacing(0)
-        column.addWidget(self.canvas, 1)
-        column.addWidget(self._tools)
+            theme.for_fingers(widget, name, spoken, spoken)
+        self.lay_out(self.canvas, (self.status_label, 1), (self.colour_combo, 0),
+                     (self.reset_button, 0), (self.rviz_button, 0))
 
     def _connect(self):
-        """Wire the hand, the choice and the drawing."""
+        """Connect the canvas, the choice of colours and the drawing."""
         self.canvas.moved.connect(self._on_moved)
         self.canvas.reset_requested.connect(self.show_all)
         self.canvas.resized.connect(self._ask)
         self.colour_combo.activated[int].connect(self._on_colour)
         self.reset_button.clicked.connect(lambda *_: self.show_all())
         self.rviz_button.clicked[bool].connect(self.rviz_chosen)
-        self._timer.timeout.connect(self._look)
 
     def _restore(self):
-        """Begin without a cloud."""
+        """Set the initial state, without a cloud."""
         self._offer((HEIGHT, DISTANCE))
 
     @property
-    def colouring(self):
-        """What the colours of the points mean, as :func:`colourings` says it."""
-        return self._chosen
-
-    @property
     def idle(self):
-        """Whether the newest cloud has been drawn, from where it is looked at now."""
+        """Whether the newest cloud has been drawn from the present viewpoint."""
         return self._drawing.idle
 
     @property
@@ -133,7 +112,7 @@ class CloudView(QWidget):
         return None if self._cloud is None else self._cloud.frame_id
 
     def offer_rviz(self, offered):
-        """Let the operator choose RViz's widget, or not."""
+        """Show or hide the button for RViz's widget."""
         self.rviz_button.setVisible(offered)
 
     def show_instead(self, widget):
@@ -152,7 +131,7 @@ class CloudView(QWidget):
         self._ask()
 
     def refuse_rviz(self, reason):
-        """Say why RViz's widget cannot be had."""
+        """Show why RViz's widget is unavailable."""
         self.show_instead(None)
         self._status_pace = Pace(REFUSAL_S)
         self._status_pace.due()
@@ -165,11 +144,14 @@ class CloudView(QWidget):
         self.canvas.show_warning('')
         if not self._looked and len(cloud.points):
             self._look_at_all()
-        self._say()
+        self._show_line()
         self._ask()
 
     def show_age(self, age_s):
-        """Tell the age of the newest cloud [s], None before the first: old ones are marked."""
+        """Mark the newest cloud if it is old.
+
+        :param age_s: its age [s], None before the first
+        """
         old = age_s is not None and age_s > OLD_S and self._cloud is not None
         self.canvas.show_warning('OLD CLOUD, {}'.format(words.age_text(age_s)) if old else '')
 
@@ -180,10 +162,10 @@ class CloudView(QWidget):
         self.canvas.setToolTip(
             self._cloud is None and plain_tip(status.detail) or _HELP)
         self._stream = stream_text(status)
-        self._say()
+        self._show_line()
 
-    def _say(self):
-        """Say how many points there are, and how their stream does where that is known."""
+    def _show_line(self):
+        """Show the number of points, and the state of their stream if known."""
         if self._cloud is not None and self._status_pace.due():
             self._status_pace = self._numbers_pace
             points = points_text(self._cloud)
@@ -196,50 +178,46 @@ class CloudView(QWidget):
         self.status_label.show_text('')
         self.canvas.clear(text)
 
-    def show_tools(self, shown):
-        """Show the figures and the controls below the cloud, or the cloud alone."""
-        self._tools.setVisible(shown)
-
     def show_all(self):
-        """Look at all of the cloud, from behind the robot."""
+        """Show the whole cloud, from behind the robot."""
         self._looked = False
         if self._cloud is not None:
             self._look_at_all()
             self._ask()
 
     def save_settings(self):
-        """Return the colouring, and from where it is looked at if that was chosen by hand."""
-        kept = {'colouring': self._chosen}
+        """Return the colouring, and the viewpoint if the operator chose it."""
+        kept = {'colouring': self.colouring}
         if self._looked:
-            kept['orbit'] = self.canvas.orbit.words()
+            kept['orbit'] = self.canvas.orbit.to_list()
         return kept
 
     def restore_settings(self, settings):
-        """Take over a dict of :meth:`save_settings`; what cannot be used is left out."""
+        """Restore a dict of :meth:`save_settings`; ignore invalid values."""
         if settings.get('colouring') in _UNITS:
-            self._chosen = settings['colouring']
+            self.colouring = settings['colouring']
             self._offer(() if self._cloud is None else colourings(self._cloud))
         try:
             self.canvas.orbit = read_orbit(settings.get('orbit'))
             self._looked = True
         except ValueError:
-            pass  # it was never chosen, or somebody wrote another thing into the file
+            pass  # never chosen, or not an orbit in the file
         self._ask()
 
     def showEvent(self, event):  # noqa: N802
-        """Draw what came while nobody could see it."""
+        """Draw the cloud received while the view was hidden."""
         super().showEvent(event)
         self._ask()
 
     def _ask(self):
-        """Ask for a picture of what there is, where anybody can see it."""
+        """Request a picture of the present cloud, if the view is visible."""
         if self._cloud is not None and self.canvas.isVisible():
             self._drawing.ask(self._cloud, self.canvas.orbit, self.canvas.drawing_size(),
-                              self._chosen)
+                              self.colouring)
             self._timer.start()
 
     def _look(self):
-        """Show what has been drawn, unless the cloud is gone meanwhile."""
+        """Show the finished picture, unless the cloud was cleared meanwhile."""
         try:
             picture = self._drawing.take()
         except ValueError as error:
@@ -255,29 +233,21 @@ class CloudView(QWidget):
         self.drawn.emit()
 
     def _on_moved(self):
-        """Keep the place that was chosen by hand."""
+        """Keep the viewpoint that the operator chose."""
         self._looked = True
         self._ask()
 
     def _look_at_all(self):
-        """Look from where most of the points can be seen."""
+        """Set the viewpoint so that most of the points are visible."""
         points = self._cloud.points[::max(1, len(self._cloud.points) // 10_000)]
         self.canvas.orbit = fitted(points @ upright_axes(self._cloud).T)
 
     def _offer(self, keys):
-        """Offer what a cloud can be coloured by; what was chosen stays, there or not."""
-        combo = self.colour_combo
-        offered = [(key, label) for key, label, _ in _COLOURINGS
-                   if key in keys or key == self._chosen]
-        if combo.view().isVisible():
-            return
-        if [key for key, _ in offered] != [combo.itemData(at) for at in range(combo.count())]:
-            combo.clear()
-            for key, label in offered:
-                combo.addItem(label, key)
-        combo.setCurrentIndex(combo.findData(self._chosen))
+        """Offer the colourings of a cloud, and the chosen one even if the cloud lacks it."""
+        offer(self.colour_combo, [(label, key) for key, label, _ in _COLOURINGS
+                                  if key in keys or key == self.colouring], self.colouring)
 
     def _on_colour(self, index):
-        """Colour by another thing."""
-        self._chosen = self.colour_combo.itemData(index)
+        """Apply the chosen colouring."""
+        self.colouring = self.colour_combo.itemData(index)
         self._ask()

@@ -1,15 +1,15 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A robot's newest point cloud: as sent, or made from a depth picture and its lens."""
+"""A robot's newest point cloud: as published, or made from a depth picture and its lens."""
 import time
 
 from sensor_msgs.msg import CameraInfo
 
 from mhri.base.names import topic_of
-from mhri.camera.image_message import read_depth
 from mhri.camera.images import DEPTH, FrameError
 from mhri.camera.ros.camera_decoder import Decoder
 from mhri.camera.ros.camera_feed import CameraFeed
+from mhri.camera.ros.pictures import read_depth
 from mhri.camera.ros.samples import Samples
 from mhri.camera.transports import find_offers, Offer
 from mhri.graph.ros.refusals import Refusals
@@ -17,8 +17,8 @@ from mhri.graph.ros.subscription import Subscription
 from mhri.sensors.point_cloud import (
     CLOUD_TYPE, CloudError, from_depth, Lens, parse_cloud, read_cloud)
 
-# Nobody looks at more per second, and each costs tens of milliseconds.
-MOST_HZ = 5.0
+# More are of no use to an operator, and each takes tens of milliseconds.
+MAX_HZ = 5.0
 _INFO_TYPE = 'sensor_msgs/CameraInfo'
 
 
@@ -38,11 +38,11 @@ class CloudDecoder(Decoder):
         self._lens = None
         super().__init__(name, DEPTH, wanted, clock)
 
-    def hear_lens(self, _, data):
+    def receive_lens(self, _, data):
         """Store the newest ``sensor_msgs/CameraInfo`` (rospy's thread)."""
         try:
             info = CameraInfo().deserialize(bytes(data))
-        except Exception as error:  # genpy raises all sorts for bytes that are not a message
+        except Exception as error:  # genpy raises various types for malformed bytes
             self._refusals.note('a {} of these bytes ({!r})'.format(_INFO_TYPE, error))
             return
         self._lens = Lens(info.K[0], info.K[4], info.K[2], info.K[5], info.width, info.height)
@@ -50,7 +50,7 @@ class CloudDecoder(Decoder):
     def read(self, message_type, data, view, received_s):
         """Return (:class:`mhri.sensors.point_cloud.Cloud`, its transport in words).
 
-        :raises FrameError: it is unreadable, or its lens has not come yet
+        :raises FrameError: the message is unreadable, or its lens has not been received yet
         """
         try:
             if message_type == CLOUD_TYPE:
@@ -65,7 +65,7 @@ class CloudDecoder(Decoder):
 
 
 class _WithLens:
-    """Beside a line to a depth picture, a subscription to its lens."""
+    """Adds a subscription of the lens to one of a depth picture."""
 
     def __init__(self, lens_topic, on_lens, *line):
         super().__init__(*line)
@@ -86,55 +86,13 @@ class _DepthSamples(_WithLens, Samples):
     """Single pictures, and their lens."""
 
 
-class LensedStream(CameraFeed):
-    """Finds, subscribes and decodes clouds as a camera's feed does pictures.
+class CloudFeed(CameraFeed):
+    """A robot's point clouds, for a widget that polls them on a timer; newest only.
 
-    :param clouds: topics of clouds relative to the robot, in order of preference
-    :param depths: topics of depth pictures relative to it, without transport; used with their lens
-    """
-
-    def __init__(self, robot, clouds, depths, clock):
-        super().__init__(robot, clouds + depths, DEPTH, clock=clock)
-        self.word = 'point cloud'
-        self._clouds = [topic_of(robot, topic) for topic in clouds]
-        self._depths = [topic_of(robot, topic) for topic in depths]
-        self.cloud_topic = ''
-
-    def new_session(self, wanted):
-        """Return the decoder of one opening."""
-        return CloudDecoder(self.robot, wanted, self._clock)
-
-    def find_offers(self, published):
-        """Return the offers, best first: clouds, then depth pictures that have a lens."""
-        offers = [Offer('cloud', topic) for topic in self._clouds
-                  if published.get(topic) == CLOUD_TYPE]
-        self.cloud_topic = offers[0].topic if offers else ''
-        depths = [topic for topic in self._depths if published.get(info_topic(topic)) == _INFO_TYPE]
-        return offers + find_offers(DEPTH, depths, published)
-
-    def line_of(self, session, offer):
-        """Return the class of a subscription to an offer with its lens, and its arguments."""
-        return self._with_lens(_Depths, session, offer, super().line_of(session, offer))
-
-    def samples_of(self, session, offer, grant, native_hz):
-        """Return the same of single pictures."""
-        return self._with_lens(_DepthSamples, session, offer,
-                               super().samples_of(session, offer, grant, native_hz))
-
-    def _with_lens(self, line_class, session, offer, line):
-        if offer.transport == 'cloud':
-            return line
-        depth = next(topic for topic in self._depths if offer.topic.startswith(topic))
-        return (line_class, info_topic(depth), session.hear_lens, *line[1:])
-
-
-class CloudFeed:
-    """A robot's point clouds, for a widget that asks for them on a timer; newest only.
-
-    Subscribes to the first one published of ``/<robot>/<cloud>`` (``sensor_msgs/PointCloud2``) and
+    Subscribes the first published one of ``/<robot>/<cloud>`` (``sensor_msgs/PointCloud2``) and
     ``/<robot>/<depth>`` (``sensor_msgs/CompressedImage`` or ``sensor_msgs/Image``, with the
-    ``camera_info`` beside it, ``sensor_msgs/CameraInfo``). No method blocks, except :meth:`close`
-    with a wait; call them on any thread.
+    ``camera_info`` beside it, ``sensor_msgs/CameraInfo``). Search, subscription and decoding work
+    as for a camera's pictures; :meth:`take` returns a :class:`Cloud`.
 
     :param robot: namespace of the robot
     :param clouds: topics of clouds relative to it, in order of preference
@@ -147,44 +105,41 @@ class CloudFeed:
         return cls(robot, kind.cloud, kind.depth) if kind.cloud or kind.depth else None
 
     def __init__(self, robot, clouds, depths=(), clock=time.monotonic):
-        self._stream = LensedStream(robot, list(clouds), list(depths), clock)
-        self._stream.set_view(max_hz=MOST_HZ)
-
-    def open(self):
-        """Begin to look for clouds and to read them; return at once."""
-        self._stream.open()
-
-    def close(self, wait_s=0.0):
-        """Read nothing more and unregister the topic, the latter on the feed's own thread.
-
-        :param wait_s: wait for it at most so long [s]
-        """
-        self._stream.close(wait_s)
-
-    def take(self):
-        """Return the newest :class:`Cloud`, None if there is no new one since the last call."""
-        return self._stream.take()
-
-    def grant(self, grant):
-        """Let through what a :class:`mhri.camera.budget.Grant` says, from now on."""
-        self._stream.grant(grant)
-
-    def figures(self):
-        """Return the :class:`mhri.camera.budget.Figures` of what it takes of the network."""
-        return self._stream.figures()
-
-    def status(self):
-        """Return the :class:`mhri.camera.images.StreamStatus` of this moment."""
-        return self._stream.status()
+        super().__init__(robot, [*clouds, *depths], DEPTH, clock=clock)
+        self.word = 'point cloud'
+        self._clouds = [topic_of(robot, topic) for topic in clouds]
+        self._depths = [topic_of(robot, topic) for topic in depths]
+        #: the cloud topic published now, '' for none
+        self.cloud_topic = ''
+        self.set_view(max_hz=MAX_HZ)
 
     def refused(self):
         """Return the number of unreadable clouds left out."""
         return self.status().bad
 
-    def topic(self):
-        """Return the cloud topic published now, '' for none."""
-        return self._stream.cloud_topic
+    def new_session(self, wanted):
+        """Return the decoder of one opening."""
+        return CloudDecoder(self.robot, wanted, self._clock)
 
-    def age_s(self):
-        """Return the age of the newest cloud [s], None before the first."""
-        return self._stream.age_s()
+    def find_offers(self, published):
+        """Return the offers, best first: clouds, then depth pictures with a lens."""
+        offers = [Offer('cloud', topic) for topic in self._clouds
+                  if published.get(topic) == CLOUD_TYPE]
+        self.cloud_topic = offers[0].topic if offers else ''
+        depths = [topic for topic in self._depths if published.get(info_topic(topic)) == _INFO_TYPE]
+        return offers + find_offers(DEPTH, depths, published)
+
+    def line_of(self, session, offer):
+        """Return (class, arguments) of the subscription of an offer and its lens."""
+        return self._with_lens(_Depths, session, offer, super().line_of(session, offer))
+
+    def samples_of(self, session, offer, grant, native_hz):
+        """Return the same for single pictures."""
+        return self._with_lens(_DepthSamples, session, offer,
+                               super().samples_of(session, offer, grant, native_hz))
+
+    def _with_lens(self, line_class, session, offer, line):
+        if offer.transport == 'cloud':
+            return line
+        depth = next(topic for topic in self._depths if offer.topic.startswith(topic))
+        return (line_class, info_topic(depth), session.receive_lens, *line[1:])

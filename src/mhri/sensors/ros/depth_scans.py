@@ -1,24 +1,24 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A robot's depth camera as the obstacle brake takes it: scans, ten a second at most."""
+"""Scans of a robot's depth camera for the obstacle brake, at most ten per second."""
 from collections import namedtuple
-import struct
 
 from mhri.base.names import topic_of
-from mhri.camera.image_message import read_depth, Wire
+from mhri.base.wire import Wire
 from mhri.camera.images import FrameError
+from mhri.camera.ros.pictures import read_depth
 from mhri.sensors.depth_beams import DepthBeams
 from mhri.sensors.point_cloud import CloudError
-from mhri.sensors.ros.cloud_feed import CloudDecoder, LensedStream
+from mhri.sensors.ros.cloud_feed import CloudDecoder, CloudFeed
 
-# As often as a laser; each costs a few milliseconds.
-MOST_HZ = 10.0
+# The rate of a laser; each scan takes a few milliseconds.
+MAX_HZ = 10.0
 
 _Read = namedtuple('_Read', 'received_s')
 
 
 class _ScanDecoder(CloudDecoder):
-    """Reads depth pictures once their lens is known, and hands on each as a scan."""
+    """Reads depth pictures once their lens is known, and passes each on as a scan."""
 
     def __init__(self, name, wanted, clock, mounts, on_scan):
         self._mounts = mounts
@@ -27,25 +27,25 @@ class _ScanDecoder(CloudDecoder):
         super().__init__(name, wanted, clock)
 
     def read(self, message_type, data, view, received_s):
-        """Hand on a picture as a scan; return what stands for it, and its transport.
+        """Pass a picture on as a scan; return a stand-in for it, and its transport.
 
-        :raises FrameError: it is unreadable, measured nothing, or its lens has not come yet
+        :raises FrameError: it is unreadable, has no measurement, or its lens is not known yet
         """
         if self._lens is None:
             raise FrameError('nothing has come on camera_info yet')
         try:
-            wire = Wire(message_type, data)
-            _, seconds, nanoseconds = wire.numbers('<III')
+            wire = Wire(message_type, data, FrameError)
+            _, stamp_s = wire.header()
             depth_m, _, transport = read_depth(message_type, data)
             scan = self._beams.scan(depth_m, self._lens, *self._mounts.camera(wire.text()))
-        except (CloudError, FrameError, struct.error) as error:
+        except (CloudError, FrameError) as error:
             self._refusals.note(str(error))
             raise FrameError(str(error))
-        self._on_scan(scan, received_s, seconds + 1e-9 * nanoseconds)
+        self._on_scan(scan, received_s, stamp_s)
         return _Read(received_s), transport
 
 
-class DepthScans(LensedStream):
+class DepthScans(CloudFeed):
     """Looks for the depth pictures of a robot and the ``camera_info`` beside them, once open.
 
     ``/<robot>/<depth>/compressedDepth`` (``sensor_msgs/CompressedImage``) or ``/<robot>/<depth>``
@@ -58,11 +58,11 @@ class DepthScans(LensedStream):
     """
 
     def __init__(self, robot, depths, mounts, on_scan, clock):
-        super().__init__(robot, [], list(depths), clock)
+        super().__init__(robot, (), depths, clock)
         self._mounts = mounts
         self._on_scan = on_scan
         self._name = ', '.join(topic_of(robot, topic) for topic in depths)
-        self.set_view(max_hz=MOST_HZ)
+        self.set_view(max_hz=MAX_HZ)
 
     def new_session(self, wanted):
         """Return the decoder of one opening."""

@@ -1,30 +1,28 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Gathers what a robot's IMU and odometry say, for the graph of its tile."""
+"""Gathers the values of a robot's IMU and odometry, for the graph of its tile."""
 import math
 import threading
 import time
 
 import numpy as np
-import rospy
+from sensor_msgs.msg import Imu
 
-from mhri.base.names import topic_of
-from mhri.base.plausible import ACCELERATION, ANGULAR_VELOCITY, QUATERNION, sifted, SPEED
+from mhri.base.plausible import ACCELERATION, ANGULAR_VELOCITY, QUATERNION, sifted
 from mhri.base.series import BinRing, IMU_KEYS, ODOMETRY_KEYS, roll_pitch_yaw, Series
-from mhri.graph.ros.messages import message_class, MessageMissing
-from mhri.graph.ros.refusals import Refusals
-from mhri.graph.ros.rospy_inside import unsubscribe
+from mhri.robots.ros.streams import ODOMETRY, RobotStreams, StreamRow
 
-# At most this many samples wait for the next redraw; beyond that the ROS thread sorts them in
-# itself.
-_MOST_PENDING = 1024
-# Of several topics for one thing the first counts, until it has been silent this long [s].
+# At most this many samples wait for the next redraw; then the ROS thread itself adds them to the
+# ring.
+_MAX_PENDING = 1024
+# Of several topics for one quantity the first is used until it has been silent this long [s].
 _SILENT_S = 1.0
 _NAN = math.nan
+_KINDS = (QUATERNION,) * 4 + (ANGULAR_VELOCITY,) * 3 + (ACCELERATION,) * 3
 
 
-def _imu_row(message):
-    """Return orientation (x, y, z, w), angular velocity and acceleration; NaN where missing.
+def _read_imu(message, note):
+    """Return orientation (x, y, z, w), angular velocity and acceleration; NaN if missing.
 
     A first covariance of -1 means that the sensor does not measure it (``sensor_msgs/Imu``).
     """
@@ -36,71 +34,43 @@ def _imu_row(message):
         row = row[:4] + (_NAN,) * 3 + row[7:]
     if message.linear_acceleration_covariance[0] == -1.0:
         row = row[:7] + (_NAN,) * 3
+    row, problem = sifted(_KINDS, row)
+    if problem:
+        note(problem)
     return row
 
 
-def _odometry_row(message):
-    """Return forward speed and yaw rate of a ``nav_msgs/Odometry``."""
-    twist = message.twist.twist
-    return twist.linear.x, twist.angular.z
-
-
-def _turtle_row(message):
-    """Return forward speed and yaw rate of a ``turtlesim/Pose``."""
-    return message.linear_velocity, message.angular_velocity
-
-
-_IMU_KINDS = (QUATERNION,) * 4 + (ANGULAR_VELOCITY,) * 3 + (ACCELERATION,) * 3
-_MOTION_KINDS = (SPEED, ANGULAR_VELOCITY)
-# Type of message: function that makes a row of one, kind of each value.
-_READERS = {'sensor_msgs/Imu': (_imu_row, _IMU_KINDS),
-            'nav_msgs/Odometry': (_odometry_row, _MOTION_KINDS),
-            'turtlesim/Pose': (_turtle_row, _MOTION_KINDS)}
+#: orientation, angular velocity and acceleration, see :func:`_read_imu`
+IMU = StreamRow('imu', lambda _, kind: (kind.imu, Imu, _read_imu))
 
 
 class _Intake:
-    """The samples of one kind, from whichever topic speaks, sorted into a ring in batches."""
+    """The samples of a stream, from the first active topic, added to a ring in batches.
 
-    def __init__(self, topics, message_type, keys, prepare, clock):
-        self.topics = topics
+    :param row_of: function from a value of the stream to a row of samples
+    :param prepare: function from an array of those to one of the ring's
+    """
+
+    def __init__(self, keys, row_of, prepare):
         self.ring = BinRing(keys)
-        self._read, self._kinds = _READERS[message_type]
-        self._message_class = message_class(message_type)
+        self._row_of = row_of
         self._prepare = prepare
-        self._clock = clock
         self._lock = threading.Lock()
         self._times, self._rows = [], []
-        self._rank, self._heard_at = 0, -math.inf
-        self._subscribers = []
-        self._refusals = [Refusals(topic, clock) for topic in topics]
+        self._rank, self._received_at = 0, -math.inf
 
-    def subscribe(self):
-        # No queue_size: it would hold for every subscriber of the topic in this program, and a
-        # recorder beside this must not lose anything.
-        self._subscribers = [
-            rospy.Subscriber(topic, self._message_class, self._hear, rank, tcp_nodelay=True)
-            for rank, topic in enumerate(self.topics)]
-
-    def unsubscribe(self):
-        subscribers, self._subscribers = self._subscribers, []
-        for subscriber in subscribers:
-            unsubscribe(subscriber)
-
-    def _hear(self, message, rank):
-        now = self._clock()
-        message = self._refusals[rank].read(message, self._message_class)
-        if message is None:
+    def add(self, newest):
+        """Handle the newest message (on a ROS thread)."""
+        value, now, rank = newest
+        if value is None:
             return
-        row, problem = sifted(self._kinds, self._read(message))
-        if problem:
-            self._refusals[rank].note(problem)
         with self._lock:
-            if rank > self._rank and now - self._heard_at < _SILENT_S:
+            if rank > self._rank and now - self._received_at < _SILENT_S:
                 return
-            self._rank, self._heard_at = rank, now
+            self._rank, self._received_at = rank, now
             self._times.append(now)
-            self._rows.append(row)
-            if len(self._times) >= _MOST_PENDING:
+            self._rows.append(self._row_of(value))
+            if len(self._times) >= _MAX_PENDING:
                 self._sort_in()
 
     def _sort_in(self):
@@ -109,75 +79,61 @@ class _Intake:
             self._times, self._rows = [], []
 
     def snapshot(self):
+        """Return a copy of the present ring."""
         with self._lock:
             self._sort_in()
             return self.ring.copy()
 
-    def age_s(self):
-        with self._lock:
-            return None if self._heard_at == -math.inf else self._clock() - self._heard_at
 
-    def refused(self):
-        return sum(refusals.count for refusals in self._refusals)
+def _motion_row(reading):
+    """Return forward speed and yaw rate from odometry."""
+    return reading.motion.linear_mps, reading.motion.angular_rad_s
 
 
 def _with_angles(rows):
-    """Turn quaternions into roll, pitch and yaw."""
+    """Convert quaternions to roll, pitch and yaw."""
     return np.column_stack((roll_pitch_yaw(rows[:, :4]), rows[:, 4:]))
 
 
 class ImuFeed:
     """A robot's motion in the last minute; subscribed between :meth:`open` and :meth:`close`.
 
-    All times are times of receipt, since a robot's clock may be off.
+    All times are times of receipt, since a robot's clock may be off. Odometry whose messages are
+    not installed is left out.
 
     :param robot: the robot's name (namespace)
-    :param imu_topics: ``sensor_msgs/Imu``, relative to the namespace, in order of preference
-    :param odometry_topics: the same for the odometry
-    :param odometry_type: one of :data:`ODOMETRY_TYPES`; left out if not installed here
+    :param kind: its :class:`mhri.base.robot_types.RobotType`; of several topics for one quantity,
+        the first active one is used
     """
 
     @classmethod
     def of(cls, robot, kind, key):
         """Return the feed of a robot, None for a type with neither an IMU nor odometry."""
-        return cls(robot, kind.imu, kind.odometry, kind.odometry_type) \
-            if kind.imu or kind.odometry else None
+        return cls(robot, kind) if kind.imu or kind.odometry else None
 
-    def __init__(self, robot, imu_topics, odometry_topics, odometry_type='nav_msgs/Odometry',
-                 clock=time.monotonic):
-        self._clock = clock
-        self._intakes = {}
-        self._empty = {ODOMETRY_KEYS: BinRing(ODOMETRY_KEYS), IMU_KEYS: BinRing(IMU_KEYS)}
-        for keys, topics, message_type, prepare in (
-                (IMU_KEYS, imu_topics, 'sensor_msgs/Imu', _with_angles),
-                (ODOMETRY_KEYS, odometry_topics, odometry_type, np.asarray)):
-            names = [topic_of(robot, topic) for topic in topics]
-            try:
-                self._intakes[keys] = _Intake(names, message_type, keys, prepare, clock)
-            except MessageMissing as error:
-                rospy.logwarn('%s: no graph of its odometry: %s', robot, error)
+    def __init__(self, robot, kind):
+        self._intakes = {IMU: _Intake(IMU_KEYS, tuple, _with_angles),
+                         ODOMETRY: _Intake(ODOMETRY_KEYS, _motion_row, np.asarray)}
+        self._streams = RobotStreams(robot, kind, self._intakes, time.monotonic, {
+            row: intake.add for row, intake in self._intakes.items()})
 
     def open(self):
-        """Start listening (blocking: it asks the master)."""
-        for intake in self._intakes.values():
-            intake.subscribe()
+        """Subscribe (blocking: it asks the master)."""
+        self._streams.open(*self._intakes)
 
     def close(self):
-        """Stop listening (blocking: it asks the master); keep what was heard."""
-        for intake in self._intakes.values():
-            intake.unsubscribe()
+        """Unsubscribe (blocking: it asks the master); keep the curves."""
+        self._streams.close()
 
     def take(self):
-        """Return the :class:`mhri.base.series.Series` of this moment; cheap at any rate."""
-        rings = dict(self._empty)
-        rings.update({keys: intake.snapshot() for keys, intake in self._intakes.items()})
-        return Series(self._clock(), {key: ring for keys, ring in rings.items() for key in keys})
+        """Return the present :class:`mhri.base.series.Series`; cheap at any rate of calls."""
+        rings = [intake.snapshot() for intake in self._intakes.values()]
+        return Series(time.monotonic(), {key: ring for ring in rings for key in ring.keys})
 
     def age_s(self):
         """Return the age of the newest IMU message [s]; None before the first, or without IMU."""
-        intake = self._intakes.get(IMU_KEYS)
-        return intake.age_s() if intake and intake.topics else None
+        return self._streams[IMU].age_s()
 
     def refused(self):
         """Return the number of messages with an impossible part, which was left out."""
-        return sum(intake.refused() for intake in self._intakes.values())
+        return sum(self._streams[row].refused() for row in self._intakes)

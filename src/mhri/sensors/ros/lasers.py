@@ -2,14 +2,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """All lasers of one robot: each for the map, together for the robot's own view."""
 from mhri.robots.ros.tf_feed import SHARED
-from mhri.sensors.all_round import all_round, Sweep, turned
+from mhri.sensors.all_round import all_round, turned
 from mhri.sensors.nearest import OLD_S
+from mhri.sensors.ros.beams import read_sweep, SCAN
 from mhri.sensors.ros.mounts import Mounts, NoPlace
-from mhri.sensors.ros.scan_feed import ScanFeed
 
 
 class Lasers:
-    """The scans of a robot's lasers, and where these sit, between :meth:`open` and :meth:`close`.
+    """The scans of a robot's lasers with their mounts, between :meth:`open` and :meth:`close`.
 
     :param robot: the robot's name (namespace)
     :param robot_type: its :class:`mhri.base.robot_types.RobotType`
@@ -22,68 +22,62 @@ class Lasers:
 
     def __init__(self, robot, robot_type):
         self._mounts = Mounts(robot_type, SHARED)
-        self._feeds = [ScanFeed(robot, [topic], no_return=robot_type.no_return)
-                       for topic in robot_type.scan]
+        self._scans = SCAN.stream(robot, robot_type)
         self._newest = {}
 
     def open(self):
-        """Start listening (blocking: it asks the master)."""
+        """Subscribe (blocking: it asks the master)."""
         SHARED.open(self)
-        for feed in self._feeds:
-            feed.open()
+        self._scans.open()
 
     def close(self):
-        """Stop listening and forget (blocking: it asks the master)."""
-        for feed in self._feeds:
-            feed.close()
+        """Unsubscribe, and forget all scans (blocking: it asks the master)."""
+        self._scans.close()
         SHARED.close(self)
         self._newest = {}
 
     def refused(self):
         """Return the number of impossible scans left out."""
-        return sum(feed.refused() for feed in self._feeds)
+        return self._scans.refused()
 
     def age_s(self):
         """Return the age of the newest scan [s], None before the first."""
-        return min((age_s for age_s in (feed.age_s() for feed in self._feeds)
-                    if age_s is not None), default=None)
+        return self._scans.age_s()
 
     def each(self, frames):
         """Return the new scans: {number of the laser: (scan, its age [s], its mount)}.
 
-        Those of a laser of which nobody says where it sits are left out.
+        Scans of a laser with an unknown mount are left out.
 
         :param frames: :class:`mhri.base.tf_tree.OdometryFrames` of the robot
-        :returns: scans as :class:`mhri.sensors.all_round.Sweep`, mounts as
-            :meth:`Mounts.laser` has them
+        :returns: scans as :class:`mhri.sensors.all_round.Sweep`, mounts as from
+            :meth:`Mounts.laser`
         """
         self._mounts.frames = frames
         found = {}
-        for number, feed in enumerate(self._feeds):
-            scan = feed.take()
-            if scan is None:
-                continue
+        for message, _, number in self._scans.take_each():
             try:
-                mount = self._mounts.laser(feed.frame, number)
+                mount = self._mounts.laser(message.header.frame_id, number)
             except NoPlace as problem:
-                feed.note(problem, NoPlace.verdict)
+                self._scans.note(problem, NoPlace.verdict, number)
                 continue
-            found[number] = (Sweep(*scan), feed.age_s() or 0.0, mount)
+            found[number] = (read_sweep(message, self._mounts.robot_type.no_return),
+                             self._scans.age_s(number) or 0.0, mount)
         return found
 
     def take(self, frames):
-        """Return what all of them see as one :class:`Sweep`, None if nothing is new.
+        """Return the scans of all lasers as one :class:`Sweep`, None if nothing is new.
 
-        One laser's distances are measured from itself, those of several from the robot's middle.
-        A laser that is silent for longer than a view is new says nothing.
+        The distances of a single laser are from the laser, those of several from the robot's
+        centre. A laser that has been silent for too long is left out.
 
-        :param frames: as :meth:`each` has them
+        :param frames: as for :meth:`each`
         """
         new = self.each(frames)
         if not new:
             return None
         self._newest.update({number: (scan, mount) for number, (scan, _, mount) in new.items()})
-        ages = [feed.age_s() for feed in self._feeds]
         seen = [found for number, found in self._newest.items()
-                if number in new or (ages[number] is not None and ages[number] <= OLD_S)]
+                if number in new or (
+                    (age_s := self._scans.age_s(number)) is not None and age_s <= OLD_S)]
         return turned(*seen[0]) if len(seen) == 1 else all_round(seen)

@@ -1,35 +1,34 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Where a robot's laser and depth camera sit on it: by tf, else as its type says."""
+"""The mounts of a robot's lasers and depth camera: from tf, else from the robot's type."""
 import math
 
 import numpy as np
 
-from mhri.base.mocap import Pose
+from mhri.base.geometry import Pose
 from mhri.base.tf_tree import frame_name, OdometryFrames
 
-# A laser that is tilted by more does not measure in the plane: its frame says nothing [cosine].
+# A laser with a greater tilt does not measure in the plane, and its frame is not used [cosine].
 _LEVEL = 0.9
-# In the robot's frame: a camera that looks ahead, its own frame being optical.
+# Rotation from the optical frame of a camera that looks ahead into the robot's frame.
 _AHEAD = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
 
 
 class NoPlace(ValueError):
-    """Nobody says where a laser sits: what it measures may lie in any direction."""
+    """The mount of a laser is unknown: its measurements may be in any direction."""
 
-    #: how to go on from its text, for :meth:`mhri.graph.ros.refusals.Refusals.note`
+    #: continuation of its text, for :meth:`mhri.graph.ros.refusals.Refusals.note`
     verdict = ('is unknown: let tf lead to its frame from that of the robot, or give "lasers" in '
                'the type of the robot')
 
 
 class Mounts:
-    """The places of one robot's sensors.
+    """The mounts of one robot's sensors.
 
-    ``frames`` are those of its odometry, :class:`mhri.base.tf_tree.OdometryFrames`;
-    ``robot_type`` is the robot's.
+    ``frames`` are the frames of its odometry, :class:`mhri.base.tf_tree.OdometryFrames`.
 
-    :param robot_type: :class:`mhri.base.robot_types.RobotType`
-    :param tf: :class:`mhri.robots.ros.tf_feed.TfFeed`, None: there is no tf
+    :param robot_type: :class:`mhri.base.robot_types.RobotType`, kept as an attribute
+    :param tf: :class:`mhri.robots.ros.tf_feed.TfFeed`, None without tf
     """
 
     def __init__(self, robot_type, tf=None):
@@ -37,15 +36,11 @@ class Mounts:
         self._tf = tf
         self.frames = OdometryFrames()
 
-    def see_odometry(self, message):
-        """Take in the frames of an odometry message, where its type has them."""
-        self.frames = OdometryFrames.of(message)
-
     def laser(self, frame, number=0):
         """Return (:class:`Pose` of a laser, whether it is mounted upside down).
 
-        :param number: which of its type's ``scan`` it is
-        :raises NoPlace: neither tf nor the robot's type says where it sits
+        :param number: its index in ``scan`` of the type
+        :raises NoPlace: neither tf nor the robot's type has its mount
         """
         matrix = self._matrix(frame)
         if matrix is None or abs(matrix[2, 2]) < _LEVEL:

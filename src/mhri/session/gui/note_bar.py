@@ -1,33 +1,41 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Asks over the foot of the screen what a mark is about; nobody has to answer."""
+"""An optional note on a mark, entered above the foot of the screen."""
 from python_qt_binding.QtCore import Qt, QTimer, Signal
-from python_qt_binding.QtWidgets import QBoxLayout, QLineEdit, QPushButton, QSizePolicy, QWidget
+from python_qt_binding.QtWidgets import QBoxLayout, QSizePolicy, QWidget
 
 from mhri.base.gui import theme
+from mhri.base.gui.controls import Button, FittingButton, LineField
 
-# It goes away by itself where nobody types.
+# Closes by itself if nothing is typed for this long [ms].
 SHOWN_MS = 20000
 LONGEST = 500
 
 
 class AskedMark:
-    """A mark that was asked for: its name, once it has one, and what is to be noted with it."""
+    """A requested mark: its name ('' until known) and the note waiting for it."""
 
-    def __init__(self, name=''):
-        self.name = name
-        self.text = ''
+    def __init__(self):
+        self.name = self.text = ''
         self.refused = False
 
 
-class NoteBar(QWidget):
-    """Hidden until it is asked; Return keeps what is typed, Escape leaves the mark as it is."""
+def note_button(parent):
+    """Return the button of the foot that does what key N does."""
+    button = theme.for_fingers(FittingButton(parent), 'mark_button', 'Mark this moment',
+                               'keeps this moment, with a note if you type one')
+    button.set_icon('flag').show_texts('Note (N)', '')
+    return button
 
-    #: the mark's name and what was typed
+
+class NoteBar(QWidget):
+    """A line to type a note, hidden until needed; Return saves it, Escape discards it."""
+
+    #: (name of the mark, note)
     noted = Signal(str, str)
-    #: what was typed to a mark that was refused
+    #: note on a mark that was refused
     unmarked = Signal(str)
-    #: it had the keyboard, and has gone
+    #: closed while it had the keyboard focus
     left = Signal()
 
     def __init__(self, parent=None):
@@ -39,25 +47,17 @@ class NoteBar(QWidget):
 
     def _build(self):
         """Make and place the parts."""
-        self.edit = QLineEdit(self)
-        self.edit.setObjectName('note_edit')
-        self.edit.setMaxLength(LONGEST)
-        self.edit.setAccessibleName('Note to the mark')
-        self.edit.setToolTip('Return keeps what you type, Esc leaves the mark without words')
-        self.keep_button = QPushButton('Keep', self)
-        self.keep_button.setObjectName('note_button')
-        self.keep_button.setFocusPolicy(Qt.TabFocus)
-        side = theme.touch_size(self)
-        for part in (self.edit, self.keep_button):
-            part.setMinimumHeight(side)
+        self.edit = LineField(
+            self, objectName='note_edit', accessibleName='Note to the mark', maxLength=LONGEST,
+            toolTip='Return keeps what you type, Esc leaves the mark without words')
+        self.keep_button = theme.for_fingers(Button('Keep', self), 'note_button')
+        self.edit.setMinimumHeight(theme.touch_size(self))
         row = self._row = QBoxLayout(QBoxLayout.LeftToRight, self)
         row.setContentsMargins(2, 0, 2, 0)
         row.addWidget(self.edit, 1)
         row.addWidget(self.keep_button)
         self.setSizePolicy(QSizePolicy.Expanding, QSizePolicy.Fixed)
-        self._timer = QTimer(self)
-        self._timer.setSingleShot(True)
-        self._timer.setInterval(SHOWN_MS)
+        self._timer = QTimer(self, singleShot=True, interval=SHOWN_MS, timeout=self._leave)
         self.hide()
 
     def _connect(self):
@@ -65,65 +65,50 @@ class NoteBar(QWidget):
         self.edit.returnPressed.connect(self._keep)
         self.edit.textEdited.connect(lambda _: self._timer.stop())
         self.keep_button.clicked.connect(self._keep)
-        self._timer.timeout.connect(self._leave)
 
     @property
     def has_keyboard(self):
-        """Whether keys are typed here."""
+        """Whether it has the keyboard focus."""
         return self.edit.hasFocus() or self.keep_button.hasFocus()
 
-    def ask(self, mark, take_keyboard):
-        """Ask about a mark that has its name, such as "m3".
+    def ask(self, take_keyboard):
+        """Ask for a note on a pending mark; a half-typed one is saved with the previous mark.
 
-        What is half typed to the mark before is kept with that one.
-
-        :param take_keyboard: let it be typed at once; else after N, a click or F6
+        :param take_keyboard: take the focus at once, so that keys typed from now on are words and
+            no commands; else after N, a click or F6
+        :returns: handle for :meth:`settle`
         """
-        self._ask(AskedMark(mark), take_keyboard)
-
-    def ask_first(self, take_keyboard):
-        """Ask about a mark that is on its way: what is typed by then must not be commands.
-
-        :returns: what :meth:`settle` needs once it is known what has become of the mark
-        """
-        self._ask(AskedMark(), take_keyboard)
+        self._finish()
+        self._mark, self._problem = AskedMark(), ''
+        self.show()
+        self._timer.start()
         if take_keyboard:
-            # Whoever asked for it may think: words that come later are no commands, either.
-            self._timer.stop()
+            self.take_keyboard()
+        else:
+            self._show_words()
         return self._mark
 
     def settle(self, mark, name, problem=''):
-        """Take in the name of a mark, or why there is none; what was typed is kept either way."""
+        """Handle the name of a mark, or the reason for its refusal; the note is kept either way."""
         mark.name, mark.refused = name, not name
         if mark.text:
-            self._tell(mark, mark.text)
+            self._emit_note(mark, mark.text)
         if mark is self._mark:
             self._problem = problem
             self._show_words()
 
     def take_keyboard(self):
-        """Let it be typed from now on."""
+        """Take the keyboard focus, and keep it: keys typed after it closed would be commands."""
         self._timer.stop()
         self.edit.setFocus(Qt.OtherFocusReason)
         self._show_words()
 
     def show_narrow(self, narrow):
-        """Have the button below the field, or beside it."""
+        """Put the button below the field if narrow, else beside it."""
         self._row.setDirection(QBoxLayout.TopToBottom if narrow else QBoxLayout.LeftToRight)
 
-    def _ask(self, mark, take_keyboard):
-        """Begin anew."""
-        self._finish()
-        self._mark = mark
-        self.show()
-        self._timer.start()
-        if take_keyboard:
-            self.edit.setFocus(Qt.OtherFocusReason)
-        self._problem = ''
-        self._show_words()
-
     def _show_words(self):
-        """Ask in the field, in as many words as it has room for."""
+        """Show the longest placeholder that fits the field."""
         saved = 'Mark {} saved. '.format(self._mark.name[1:]) if self._mark.name else ''
         texts = ('Add a note?',) if self.has_keyboard else (
             'N again, or a click, to add a note', 'N again to add a note')
@@ -132,19 +117,19 @@ class NoteBar(QWidget):
             metrics, (saved + texts[0], *texts), self.edit.width() - metrics.height()))
 
     def resizeEvent(self, event):  # noqa: N802
-        """Fit the width."""
+        """Fit the placeholder to the width."""
         super().resizeEvent(event)
         self._show_words()
 
     def _finish(self):
-        """Keep what is typed, if anything is."""
+        """Save the text, if there is any."""
         text = self.edit.text().strip()
         if text:
-            self._tell(self._mark, text)
+            self._emit_note(self._mark, text)
         self.edit.clear()
 
-    def _tell(self, mark, text):
-        """Tell of a note, now or once its mark has a name."""
+    def _emit_note(self, mark, text):
+        """Emit a note, now or once its mark has a name."""
         if mark.name:
             self.noted.emit(mark.name, text)
         elif mark.refused:
@@ -161,12 +146,12 @@ class NoteBar(QWidget):
             super().keyPressEvent(event)
 
     def _keep(self):
-        """Keep what is typed, and go."""
+        """Save the text and close."""
         self._finish()
         self._leave()
 
     def _leave(self):
-        """Go, and give the keyboard back."""
+        """Close, and give up the keyboard focus."""
         self._timer.stop()
         had_keyboard = self.has_keyboard
         self.hide()

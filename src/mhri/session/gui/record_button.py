@@ -1,18 +1,18 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""One button that records the whole session, and says for how long it has."""
-from python_qt_binding.QtCore import Qt
-from python_qt_binding.QtWidgets import QPushButton, QSizePolicy
+"""The button that records the session, with the duration of the recording."""
+from python_qt_binding.QtWidgets import QSizePolicy
 
 from mhri.base.gui import theme
+from mhri.base.gui.controls import Button
 from mhri.base.gui.labels import plain_tip
 from mhri.session.view import button_texts, SessionView, tip_text
 
 _WIDEST = ('not recorded !', 'REC 88:88:88 !')
 
 
-class RecordButton(QPushButton):
-    """Shows a :class:`mhri.session.view.SessionView`; the host hears its clicks."""
+class RecordButton(Button):
+    """Shows a :class:`mhri.session.view.SessionView`; the presenter handles its clicks."""
 
     def __init__(self, parent=None):
         super().__init__(parent)
@@ -21,28 +21,24 @@ class RecordButton(QPushButton):
         self._restore()
 
     def _build(self):
-        """Keep the room of the longest words: nothing beside it jumps."""
-        self.setObjectName('session_button')
+        """Reserve the width of the longest text, so that nothing beside it moves."""
+        theme.for_fingers(self, 'session_button')
         self.setCheckable(True)
-        self.setFocusPolicy(Qt.TabFocus)
-        self.setAutoDefault(False)
-        touch = theme.touch_size(self)
-        self.setMinimumHeight(touch)
-        self.setMinimumWidth(touch // 2 + max(
+        self.setMinimumWidth(theme.touch_size(self) // 2 + max(
             theme.text_width(self.font(), text) for text in _WIDEST))
         self.setSizePolicy(QSizePolicy.Minimum, QSizePolicy.Fixed)
 
     def _connect(self):
-        """Show what is so, not what was clicked."""
+        """Show the actual state, not the click."""
         self.clicked.connect(lambda: self.setChecked(self._view.on))
 
     def _restore(self):
-        """Begin with nothing heard."""
+        """Start without a state."""
         self._view = None
         self.show_session(SessionView())
 
     def show_session(self, view):
-        """Show it; the same again costs nothing."""
+        """Show a view; return early if unchanged."""
         if view == self._view:
             return
         self._view = view

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The keys of a replay: those that would drive, stop or record do nothing, or move in time."""
+"""The keys of a replay: keys that drive, stop or record are disabled or move in time."""
 from python_qt_binding.QtCore import QEvent, QObject, Qt
 from python_qt_binding.QtGui import QKeySequence
 from python_qt_binding.QtWidgets import QAbstractButton, QLineEdit, QWidget
@@ -8,7 +8,7 @@ from python_qt_binding.QtWidgets import QAbstractButton, QLineEdit, QWidget
 from mhri.driving.gui.drive_keys import COMMANDS
 from mhri.driving.gui.key_help import COMMAND_WORDS
 
-# What keys do: a method of TimeLineBar and what it is given.
+# Keys: the method of TimeLineBar to call, and its argument.
 _MOVES = {
     Qt.Key_Space: ('toggle',), Qt.Key_K: ('toggle',),
     Qt.Key_Left: ('skip', -5.0), Qt.Key_Right: ('skip', 5.0),
@@ -16,14 +16,14 @@ _MOVES = {
     Qt.Key_PageUp: ('go_back',), Qt.Key_PageDown: ('go_on',),
     Qt.Key_Up: ('change_speed', 1), Qt.Key_Down: ('change_speed', -1),
     Qt.Key_Plus: ('change_speed', 1), Qt.Key_Minus: ('change_speed', -1)}
-# They drive, stop, choose who is driven, talk, record or mark on a screen that does.
+# On the live screen these keys drive, stop, select, talk, record or mark.
 _IDLE = frozenset((Qt.Key_W, Qt.Key_A, Qt.Key_S, Qt.Key_D, Qt.Key_T, Qt.Key_C, Qt.Key_R, Qt.Key_N,
                    Qt.Key_Return, Qt.Key_Enter))
 _DIGITS = frozenset(range(Qt.Key_0, Qt.Key_9 + 1))
 _LIST_KEYS = frozenset((Qt.Key_Up, Qt.Key_Down, Qt.Key_Home, Qt.Key_End, Qt.Key_PageUp,
                         Qt.Key_PageDown))
 _KINDS = frozenset((QEvent.KeyPress, QEvent.KeyRelease, QEvent.ShortcutOverride))
-#: (keys, what they do), for the page of keys
+#: (keys, description), for the page of keys
 REPLAY_ROWS = (
     ('Space', 'play, or pause'),
     ('Left, Right', '5 s back, or on'),
@@ -36,7 +36,7 @@ REPLAY_ROWS = (
 
 
 class ReplayKeys(QObject):
-    """Event filter for the application, installed after that of the drive keys, so asked first.
+    """Event filter for the application; install it after the drive keys' filter to precede it.
 
     :param bar: :class:`mhri.session.gui.time_line.TimeLineBar`
     """
@@ -46,7 +46,7 @@ class ReplayKeys(QObject):
         self._bar = bar
 
     def eventFilter(self, watched, event):  # noqa: N802
-        """Take the keys that drive or move in time; everything else goes its way."""
+        """Handle the keys that drive or move in time; pass on everything else."""
         if event.type() not in _KINDS or not isinstance(watched, QWidget) \
                 or isinstance(watched, QLineEdit):
             return False
@@ -61,7 +61,7 @@ class ReplayKeys(QObject):
 
     @staticmethod
     def _takes(watched, key, event):
-        """Tell whether a key is one of a replay."""
+        """Return whether the replay handles a key."""
         if key in (Qt.Key_Return, Qt.Key_Enter) and isinstance(watched, QAbstractButton):
             return False
         if key in _LIST_KEYS and watched.inherits('QAbstractItemView'):
@@ -70,7 +70,7 @@ class ReplayKeys(QObject):
 
     @staticmethod
     def _moves(event):
-        """Tell whether a press moves in time: Shift+Space, a stop, does not, nor a key held."""
+        """Return whether a press moves in time; Shift+Space (stop) and most held keys do not."""
         if event.isAutoRepeat() and event.key() not in (Qt.Key_Left, Qt.Key_Right):
             return False
         return not event.modifiers() & (Qt.ShiftModifier | Qt.ControlModifier | Qt.AltModifier) \

@@ -1,19 +1,19 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The bar below a screen that shows a replay: play, pause, speed, jumps, and the time line."""
-from datetime import datetime
-
+"""The replay bar below the screen: play, pause, speed, jumps, and the time line."""
 from python_qt_binding.QtCore import Qt, Signal
-from python_qt_binding.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
+from python_qt_binding.QtWidgets import QWidget
 
 from mhri.base.gui import theme
 from mhri.base.gui.labels import Sign, TextLine
+from mhri.base.gui.layouts import in_column, in_row
+from mhri.recording.recording import duration_text, is_simulated, moment_text
 from mhri.session.gui.time_line_canvas import TimeLineCanvas
 from mhri.session.playing import other_speed, SPEEDS
-from mhri.session.timeline import duration_text, TimeLine
+from mhri.session.timeline import TimeLine
 
 PLAY, PAUSE = 'Play', 'Pause'
-NOTHING_DRIVES = 'REPLAY: nothing drives'
+NOTHING_DRIVES = 'REPLAY: nothing moves'
 
 
 def speed_text(speed):
@@ -22,18 +22,18 @@ def speed_text(speed):
 
 
 class TimeLineBar(QWidget):
-    """Shows where a replay is, and asks to go elsewhere; it decides nothing."""
+    """Shows the position of a replay, and emits requests to move it."""
 
     play_requested = Signal(bool)
     #: seconds from the start
     seek_requested = Signal(float)
-    #: times as fast as it was
+    #: factor of the recorded speed
     speed_requested = Signal(float)
 
-    def __init__(self, parent=None):
-        super().__init__(parent)
+    def __init__(self):
+        super().__init__()
         self._line = TimeLine(0.0, 0.0)
-        #: {robot: number} of the session on show
+        #: {robot: number} of the displayed session
         self.numbers = None
         #: where the replay is [s from the start]
         self.position_s = 0.0
@@ -47,7 +47,7 @@ class TimeLineBar(QWidget):
         """Make and place the parts."""
         self.setObjectName('time_line_bar')
         self.setFont(theme.base_font(self.font()))
-        # Their keys are in the tool tips.
+        # The tool tips name the keys.
         self.previous_button = theme.finger_button(self, 'previous_button', 'Previous', 'Page Up')
         self.play_button = theme.finger_button(self, 'play_button', PLAY, 'Space', also=PAUSE)
         self.next_button = theme.finger_button(self, 'next_button', 'Next', 'Page Down')
@@ -70,26 +70,19 @@ class TimeLineBar(QWidget):
         self.speed_label.setAlignment(Qt.AlignCenter)
         self.tick_label.setObjectName('tick_label')
         self.replay_label.setObjectName('replay_label')
-        self.replay_label.setFont(theme.larger(self.font(), 1.15, bold=True))
+        self.replay_label.setFont(theme.larger(self.font(), theme.HEAD, bold=True))
         self.replay_label.fix_width('REPLAY')
         self._sign = Sign(self)
-        self._sign.show_sign((theme.TRIANGLE, theme.ATTENTION))
+        self._sign.show_sign(theme.WARNING)
         self.canvas = TimeLineCanvas(self)
-        row = QHBoxLayout()
-        for part, stretch in (
-                (self._sign, 0), (self.replay_label, 0), (self.previous_button, 0),
-                (self.play_button, 0), (self.next_button, 0), (self.slower_button, 0),
-                (self.speed_label, 0), (self.faster_button, 0), (self.clock_label, 0),
-                (self.tick_label, 1)):
-            row.addWidget(part, stretch)
-        column = QVBoxLayout(self)
-        column.setContentsMargins(8, 4, 8, 4)
-        column.setSpacing(2)
-        column.addLayout(row)
-        column.addWidget(self.canvas)
+        controls = in_row(
+            self._sign, self.replay_label, self.previous_button, self.play_button,
+            self.next_button, self.slower_button, self.speed_label, self.faster_button,
+            self.clock_label, (self.tick_label, 1))
+        in_column(controls, self.canvas, of=self, margins=(8, 4, 8, 4), gap=4)
 
     def _connect(self):
-        """Wire the buttons."""
+        """Connect the buttons."""
         self.play_button.clicked.connect(self.toggle)
         self.previous_button.clicked.connect(self.go_back)
         self.next_button.clicked.connect(self.go_on)
@@ -98,7 +91,7 @@ class TimeLineBar(QWidget):
         self.canvas.seek_requested.connect(self.seek_requested)
 
     def _restore(self):
-        """Begin with nothing known."""
+        """Start with no session."""
         self.replay_label.show_text(NOTHING_DRIVES, theme.ATTENTION, shorter=('REPLAY',))
         self.show_state(0.0, 1.0, False)
 
@@ -109,7 +102,7 @@ class TimeLineBar(QWidget):
         self.show_state(self.position_s, self._speed, self._playing)
 
     def show_state(self, position_s, speed, playing):
-        """Show where the replay is, and how it goes on."""
+        """Show the position and the speed of the replay."""
         self.position_s, self._speed, self._playing = position_s, speed, playing
         self.canvas.show_position(position_s)
         text = PAUSE if playing else PLAY
@@ -120,9 +113,9 @@ class TimeLineBar(QWidget):
         self.faster_button.setEnabled(speed < SPEEDS[-1])
         self.previous_button.setEnabled(self._line.previous_tick(position_s) is not None)
         self.next_button.setEnabled(self._line.next_tick(position_s) is not None)
-        wall = datetime.fromtimestamp(self._line.start + position_s).strftime('%H:%M:%S') \
-            if self._line.start else '--:--:--'
-        self.clock_label.show_text('{}  {} of {}'.format(
+        start = self._line.start
+        wall = '' if is_simulated(start) else moment_text(start + position_s) + '  '
+        self.clock_label.show_text('{}{} of {}'.format(
             wall, duration_text(position_s), duration_text(self._line.length_s)))
         tick = self._line.previous_tick(position_s + 1.0)
         self.tick_label.show_text(' '.join(filter(None, (
@@ -145,9 +138,9 @@ class TimeLineBar(QWidget):
             self.seek_requested.emit(tick.at_s)
 
     def skip(self, seconds):
-        """Go so much further, or back."""
+        """Seek by a number of seconds; negative goes back."""
         self.seek_requested.emit(min(max(0.0, self.position_s + seconds), self._line.length_s))
 
     def change_speed(self, steps):
-        """Go faster (positive) or slower by steps."""
+        """Change the speed by steps; positive is faster."""
         self.speed_requested.emit(other_speed(self._speed, steps))

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The picture of a session's time: who was driven, stops, marks and events; a click goes there."""
+"""The drawing of a time line: driven robots, stops, marks and events; a click seeks there."""
 import math
 
 from python_qt_binding.QtCore import QPointF, QRectF, QSize, Qt, Signal
@@ -9,23 +9,24 @@ from python_qt_binding.QtWidgets import QSizePolicy, QToolTip, QWidget
 
 from mhri.base.gui import theme
 from mhri.recording.folder import ERROR
-from mhri.session.timeline import duration_text, MARK, STOP, TimeLine
+from mhri.recording.recording import duration_text
+from mhri.session.timeline import MARK, STOP, TimeLine
 
-# Room at both ends, so that the first and the last moment can be hit [heights of a line].
+# Margin at both ends, so that the first and the last moment can be clicked [line heights].
 _MARGIN_UNITS = 0.8
-# Above the lanes there is room for the ticks, below them for the times [heights of a line].
+# Room for ticks above the lanes and for times below them [line heights].
 _TICKS_UNITS, _TIMES_UNITS = 1.0, 1.1
 _LANES_UNITS = 1.5
-# A tick under the pointer is told within so much [px].
+# Maximum distance of the pointer from a tick to show its text [px].
 _NEAR_PX = 8
-# Between two times that are written [s]: the least that leaves them room.
+# Steps between labelled times [s]; the smallest that fits is used.
 _STEPS_S = (5, 10, 30, 60, 300, 600, 1800, 3600, 7200, 21600)
 
 
 class TimeLineCanvas(QWidget):
-    """Shows a :class:`mhri.session.timeline.TimeLine`, and where in it we are."""
+    """Shows a :class:`mhri.session.timeline.TimeLine` and the current position."""
 
-    #: a moment was pressed or dragged to [s from the start]
+    #: clicked or dragged position [s from the start]
     seek_requested = Signal(float)
 
     def __init__(self, parent=None):
@@ -38,32 +39,32 @@ class TimeLineCanvas(QWidget):
         self._build()
 
     def _build(self):
-        """Set what never changes."""
+        """Set the fixed properties."""
         self.setObjectName('time_line_canvas')
         self.setAccessibleName('Time line')
         self.setMouseTracking(True)
         self.setSizePolicy(QSizePolicy.Expanding, QSizePolicy.Fixed)
 
     def sizeHint(self):  # noqa: N802
-        """Return the height that it needs."""
+        """Return the required size."""
         unit = self.fontMetrics().height()
         return QSize(20 * unit, round((_TICKS_UNITS + _LANES_UNITS + _TIMES_UNITS) * unit) + 4)
 
     minimumSizeHint = sizeHint
 
     def show_time_line(self, line, numbers):
-        """Show a session; ``numbers`` are those of its robots."""
+        """Show a session; ``numbers`` is {robot: number}."""
         self._line, self._numbers = line, dict(numbers)
         self.update()
 
     def show_position(self, position_s):
-        """Show where we are; not while somebody drags it."""
+        """Show the position, unless it is being dragged."""
         if not self._dragged and position_s != self._position_s:
             self._position_s = position_s
             self.update()
 
     def x_of(self, position_s):
-        """Return where a moment is [px from the left]."""
+        """Return the x coordinate of a position [px]."""
         left, width = self._room()
         return left + width * position_s / max(self._line.length_s, 1e-3)
 
@@ -76,13 +77,13 @@ class TimeLineCanvas(QWidget):
         return min(max(0.0, (x - left) / width), 1.0) * self._line.length_s
 
     def mousePressEvent(self, event):  # noqa: N802
-        """Go there."""
+        """Seek to the clicked position."""
         if event.button() == Qt.LeftButton:
             self._dragged = True
             self._go(event.pos().x())
 
     def mouseMoveEvent(self, event):  # noqa: N802
-        """Go on while it is dragged; else say what is below the pointer."""
+        """Follow a drag; otherwise show the texts of the ticks near the pointer."""
         if self._dragged:
             self._position_s = self._position_of(event.pos().x())
             self.update()
@@ -94,7 +95,7 @@ class TimeLineCanvas(QWidget):
             for tick in near[:5]), self)
 
     def mouseReleaseEvent(self, event):  # noqa: N802
-        """Go where it was dragged to."""
+        """Seek to the position where a drag ends."""
         if event.button() == Qt.LeftButton and self._dragged:
             self._dragged = False
             if abs(self._position_of(event.pos().x()) - self._asked) > 1e-6:
@@ -142,13 +143,12 @@ class TimeLineCanvas(QWidget):
                                      str(self._numbers.get(name) or name))
 
     def _paint_stops(self, painter, lanes):
-        """Hatch where everything was stopped."""
+        """Hatch the spans in which STOP ALL was in force."""
         ink = theme.colour(theme.STOP, self.palette())
         for span in self._line.stopped:
             part = QRectF(self.x_of(span.begin_s), lanes.top(),
                           max(3.0, self.x_of(span.end_s) - self.x_of(span.begin_s)), lanes.height())
-            painter.setPen(QPen(ink, 2))
-            painter.setBrush(Qt.NoBrush)
+            theme.set_ink(painter, QPen(ink, 2))
             painter.drawRect(part)
             painter.save()
             painter.setClipRect(part)
@@ -165,8 +165,7 @@ class TimeLineCanvas(QWidget):
         side = 0.8 * unit
         if tick.kind == MARK:
             ink = theme.colour(theme.TEXT, palette)
-            painter.setPen(QPen(ink, 2))
-            painter.setBrush(ink)
+            theme.set_ink(painter, QPen(ink, 2), ink)
             painter.drawLine(QPointF(x, bottom), QPointF(x, bottom - side))
             painter.drawPolygon(QPolygonF([
                 QPointF(x, bottom - side), QPointF(x + 0.7 * side, bottom - 0.7 * side),
@@ -178,7 +177,7 @@ class TimeLineCanvas(QWidget):
                          theme.colour(tone, palette), palette.color(QPalette.Window))
 
     def _paint_times(self, painter, lanes, unit):
-        """Write the time below, as often as there is room."""
+        """Label the times below, as densely as fits."""
         painter.setFont(theme.number_font(self.font()))
         painter.setPen(theme.colour(theme.MUTED, self.palette()))
         room = theme.text_width(painter.font(), '0:00:00') + unit

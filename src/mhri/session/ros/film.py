@@ -1,33 +1,37 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The film of a session, written frame by frame at a constant rate, by OpenCV (FFmpeg)."""
+"""Writes the film of a session at a constant frame rate with OpenCV (FFmpeg)."""
 import os
 
 import numpy as np
 
+from mhri.base.geometry import composed, Pose
+from mhri.base.io.files import whole
 from mhri.base.opencv import cv2
 from mhri.recording.folder import NotASession
-from mhri.session.film import cameras_of, frame_count, frame_of, frame_size, Headings, Tile
-from mhri.session.ros.report_files import whole
+from mhri.session.film import (
+    cameras_of, frame_count, frame_of, frame_size, Headings, map_size, OLD_S, Tile)
+from mhri.session.film_map import FilmMap
+from mhri.session.ros.session_reader import PLACES
 
 FILM = 'film.mp4'
-# H.264, which every browser shows, where there is an encoder; else MPEG-4.
+# H.264, which every browser plays, if there is an encoder; else MPEG-4.
 _CODECS = ('avc1', 'mp4v')
 _PICTURES = 'sensor_msgs/CompressedImage'
 _NS = 10 ** 9
-# No camera of a robot has more in each direction; a hostile one may claim to [px].
+# Maximum width and height of a picture; larger ones are rejected as hostile [px].
 _LARGEST = 10000
 
 
 class Film:
     """Reads the pictures of a session in order of time.
 
-    :param teller: the :class:`mhri.session.ros.told.Teller` that has made ``report``
-    :raises NotASession: there are no pictures in it
+    :param builder: :class:`mhri.session.ros.session_reader.ReportBuilder` of ``report``
+    :raises NotASession: the session has no pictures
     """
 
-    def __init__(self, session, teller, report):
-        self._session, self._teller = session, teller
+    def __init__(self, session, builder, report):
+        self._session, self._builder = session, builder
         self._line, self._headings = report.line, Headings(report)
         topics = [connection.topic for connection in session.bags.connections()
                   if connection.kind == _PICTURES] if session.bags else []
@@ -36,13 +40,18 @@ class Film:
         if not self._cameras:
             raise NotASession('{}: no film: no pictures of cameras are recorded in it'.format(
                 session.path))
-        self._newest, self._decoded, self._speeds = {}, {}, {}
+        self._newest, self._decoded, self._motions = {}, {}, {}
+        self._origins = None, {}
+        size = map_size(len(self._cameras))
+        self._map = FilmMap(report, builder.grid, size) if size else None
+        if self._map is not None and not self._map.names:
+            self._map = None
 
     def write(self, folder, fps, progress):
-        """Write the film into a folder (blocking for long); return its path.
+        """Write the film into a folder (blocks for a long time); return its path.
 
-        :param progress: called with (frames that are done, all frames)
-        :raises OSError: it cannot be written
+        :param progress: called with (frames written, all frames)
+        :raises OSError: the film cannot be written
         """
         path = os.path.join(folder, FILM)
         count = frame_count(self._line.length_s, fps)
@@ -59,7 +68,7 @@ class Film:
         return path
 
     def _frames(self, count, fps):
-        """Yield every frame: pictures between two are left out, missing ones are repeated."""
+        """Yield every frame, each with the newest picture of every camera."""
         bags = self._session.bags
         bags.step_s = 0.0
         coming = bags.after(bags.start_ns - 1, self._wanted)
@@ -71,12 +80,14 @@ class Film:
                 self._newest[ahead.connection.topic] = ahead
                 ahead = next(coming, None)
             heading, stopped = self._headings.at(at_s)
+            the_map = None if self._map is None else self._map.at(at_s, dict(self._poses(until_ns)))
             yield frame_of([self._tile(camera, until_ns) for camera in self._cameras], heading,
-                           stopped)
+                           stopped, the_map)
 
     def _wanted(self, connection):
         return (connection.kind == _PICTURES and connection.topic in {
-            camera.topic for camera in self._cameras}) or self._teller.is_odometry(connection)
+            camera.topic for camera in self._cameras}) or self._builder.is_odometry(connection) \
+            or self._builder.is_places(connection)
 
     def _tile(self, camera, now_ns):
         recorded = self._newest.get(camera.topic)
@@ -85,23 +96,51 @@ class Film:
         known = self._decoded.get(camera.topic)
         if known is None or known[0] is not recorded:
             picture = self._decode(recorded)
-            # A damaged picture leaves the one before it.
+            # A damaged picture is skipped; the previous one is kept.
             picture = picture if picture is not None else known[1] if known else None
             known = self._decoded[camera.topic] = recorded, picture
         return Tile(camera, known[1], (now_ns - recorded.time_ns) / _NS, self._speed(camera.robot))
 
+    def _poses(self, now_ns):
+        """Yield (robot, (its pose on the map, whether it is lost)) of the robots on the map."""
+        for robot in self._map.names:
+            motion, origin = self._motion(robot), self._origin(robot)
+            if motion is None or origin is None:
+                continue
+            recorded = self._newest[self._builder.odometry_topic(robot)]
+            pose = Pose(motion.x_m, motion.y_m, motion.heading_rad)
+            yield robot, (composed(origin, pose), (now_ns - recorded.time_ns) / _NS > OLD_S)
+
+    def _origin(self, robot):
+        """Return the origin of a robot's odometry in the frame of the map, None if unknown."""
+        if not self._map.placed:
+            return Pose(0.0, 0.0, 0.0)
+        recorded = self._newest.get(PLACES)
+        if recorded is not None and recorded is not self._origins[0]:
+            known = self._origins[1]
+            # A lost robot may have no place any more: it stays where it was.
+            self._origins = recorded, {**known, **{
+                name: pose for name, pose in self._builder.origins(recorded).items()
+                if pose is not None}}
+        return self._origins[1].get(robot)
+
     def _speed(self, robot):
-        recorded = self._newest.get(self._teller.odometry_topic(robot))
+        motion = self._motion(robot)
+        return None if motion is None else motion.speed_mps
+
+    def _motion(self, robot):
+        """Return the newest possible :class:`Motion` of a robot, None without one."""
+        recorded = self._newest.get(self._builder.odometry_topic(robot))
         if recorded is None:
             return None
-        if self._speeds.get(robot, (None, None))[0] is not recorded:
-            motion = self._teller.motion(recorded)
-            self._speeds[robot] = recorded, motion.speed_mps if motion is not None \
+        if self._motions.get(robot, (None, None))[0] is not recorded:
+            motion = self._builder.motion(recorded)
+            self._motions[robot] = recorded, motion if motion is not None \
                 and motion.is_possible() else None
-        return self._speeds[robot][1]
+        return self._motions[robot][1]
 
     def _decode(self, recorded):
-        message = self._teller.message(recorded)
+        message = self._builder.message(recorded)
         if message is None or not message.data:
             return None
         try:
@@ -121,5 +160,5 @@ def _writer(path, fps, size):
         if writer.isOpened():
             return writer
         writer.release()
-    raise OSError('{} cannot be written: OpenCV has no encoder for it, or the folder takes no '
-                  'files'.format(path))
+    raise OSError('{} cannot be written: OpenCV has no encoder for it, or the folder is not '
+                  'writable'.format(path))

@@ -1,58 +1,51 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Lines of a session from what the graph and the screens say."""
+"""Lines of a session, from topics of the drive service and of screens."""
 import functools
 import time
 
 import genpy
 import rospy
-from std_msgs.msg import Bool, String
+from std_msgs.msg import String
 
 from mhri.graph.ros.worker import Worker
-from mhri.msg import ControlMode, GatesState, RobotSelect, SessionEvent
+from mhri.msg import DriveState, SessionEvent
 from mhri.session.lines import GraphWatch, line_of_screen
 from mhri.session.ros.moment import read
-from mhri.session.topics import fault_topic, PANEL_EVENTS
-
-MODE, STOP = '/mux/mode', '/robot_controller/stop_all'
-SELECT, GATES = '/robot_controller/robot_select', '/gates/state'
+from mhri.session.topics import DRIVE, fault_topic, PANEL_EVENTS
 
 
 class GraphLines:
-    """Reads the topics that lines come from, on a thread of its own.
+    """Makes lines from messages of the tap, on its own thread.
 
-    :param tell: called with (kind, severity, robot, text, time of day [s], ROS time [s])
-    ``watched`` is what the tap is to call for each topic; ``watch`` the :class:`GraphWatch`.
+    :param on_line: called with (kind, severity, robot, text, data, time of day [s], ROS time [s])
+    ``watched`` is {topic: callback} for the tap; ``watch`` is the :class:`GraphWatch`.
     """
 
-    def __init__(self, tell):
-        self._tell = tell
+    def __init__(self, on_line):
+        self._on_line = on_line
         self.watch = GraphWatch()
         self._worker = Worker('session_lines')
-        self.watched = {topic: self._hear for topic in (MODE, STOP, SELECT, GATES, PANEL_EVENTS)}
-        self._readers = {
-            MODE: (ControlMode, lambda said: self.watch.mode(said.source)),
-            STOP: (Bool, lambda said: self.watch.stop(said.data)),
-            SELECT: (RobotSelect, self._select),
-            GATES: (GatesState, lambda said: self.watch.control(said.operator, said.computer))}
+        self.watched = {topic: self._on_message for topic in (DRIVE, PANEL_EVENTS)}
+        self._readers = {DRIVE: (DriveState, self._drive)}
         self._caller = ''
 
     def follow(self, robots):
-        """Read what fails of these simulated robots, too."""
+        """Also read the faults of these simulated robots."""
         for robot in robots:
             topic = fault_topic(robot)
             self._readers[topic] = String, functools.partial(self._fail, robot)
-            self.watched[topic] = self._hear
+            self.watched[topic] = self._on_message
 
     def _fail(self, robot, message):
         return self.watch.faults(robot, message.data)
 
     def start(self):
-        """Begin."""
+        """Start the thread."""
         self._worker.start()
 
-    def _hear(self, fields, time_ns, frame):
-        """Take a message (on the reading thread)."""
+    def _on_message(self, fields, time_ns, frame):
+        """Queue a message (on the reading thread)."""
         self._worker.do(self._read, fields, time_ns * 1e-9, time.time(), frame)
 
     def _read(self, fields, ros_s, wall_s, frame):
@@ -64,25 +57,25 @@ class GraphLines:
                 kind, take = self._readers[topic]
                 lines = take(read(kind, frame))
         except genpy.DeserializationError as error:
-            rospy.logwarn_throttle(10.0, '{} is no message: {}'.format(topic, error))
+            rospy.logwarn_throttle(10.0, '{}: cannot read the message: {}'.format(topic, error))
             return
         for line in lines:
-            self._tell(*line, wall_s, ros_s)
+            self._on_line(*line, wall_s, ros_s)
 
-    def _select(self, message):
-        """Take the word of the one in control alone: another one's is refused by the gates, too."""
-        if self.watch.operator not in ('', self._caller):
-            return []
-        return self.watch.selection(message.robots)
+    def _drive(self, said):
+        watch = self.watch
+        return watch.control(said.operator, said.computer) + watch.mode(said.mode) \
+            + watch.stop(said.stop_all) + watch.selection(
+                robot.name for robot in said.robots if robot.selected)
 
     def _of_screen(self, said):
         if self.watch.operator not in ('', self._caller):
             return []
-        line = line_of_screen(said.kind, said.severity, said.robot, said.text)
+        line = line_of_screen(said.kind, said.severity, said.robot, said.text, said.data)
         return [line] if line else []
 
     def silence(self, ages_s, now_s, ros_s):
-        """Tell of robots that are lost or back, where no screen does.
+        """Report lost and returned robots; call it only if no screen does.
 
         Arguments as for :meth:`mhri.session.lines.GraphWatch.silence`.
         """
@@ -90,4 +83,4 @@ class GraphLines:
 
     def _silence(self, ages_s, now_s, ros_s, wall_s):
         for line in self.watch.silence(ages_s, now_s):
-            self._tell(*line, wall_s, ros_s)
+            self._on_line(*line, wall_s, ros_s)

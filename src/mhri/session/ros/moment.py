@@ -1,22 +1,21 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a mark keeps of a moment: where every robot is, and what every camera in sight shows."""
+"""The data of a mark: the pose of every robot, and a still of every active camera."""
 import genpy
 import numpy as np
 import rospy
 from sensor_msgs.msg import CompressedImage
 
-from mhri.base.mocap import Pose
+from mhri.base.geometry import composed, Pose
 from mhri.base.names import topic_of
 from mhri.graph.ros.messages import message_class, MessageMissing
-from mhri.map.places import composed
 from mhri.msg import Places
 from mhri.recording.folder import still_name
 from mhri.robots.ros.odometry import MOTIONS
-from mhri.session.topics import camera_topics
+from mhri.session.topics import camera_topics, is_depth
 
 PLACES = '/mhri_tasks/places'
-# A picture that is older is not in sight [s].
+# A camera is active if its newest picture is at most this old [s].
 IN_SIGHT_S = 3.0
 _JPEG = b'\xff\xd8'
 
@@ -24,27 +23,33 @@ _JPEG = b'\xff\xd8'
 def read(kind, frame):
     """Return the message of a frame (its length and bytes).
 
-    :raises genpy.DeserializationError: it is none
+    :raises genpy.DeserializationError: the bytes are malformed
     """
     message = kind()
     message.deserialize(frame[4:])
     return message
 
 
-def jpeg_of(frame):
-    """Return the jpeg of a compressed picture's frame, None where it is no picture.
+def jpeg_of(frame, depth=False):
+    """Return the JPEG of a compressed picture's frame, None if it cannot be decoded.
 
-    :raises genpy.DeserializationError: it is no ``sensor_msgs/CompressedImage``
+    :param depth: it is a ``compressedDepth`` picture, to be coloured as on the screen
+    :raises genpy.DeserializationError: the frame is not a valid ``sensor_msgs/CompressedImage``
     """
-    data = bytes(read(CompressedImage, frame).data)
+    picture = read(CompressedImage, frame)
+    data = bytes(picture.data)
     if data.startswith(_JPEG):
         return data
-    from mhri.base.opencv import cv2  # nearly every camera has jpegs: a start does not wait for it
+    # Rarely needed: most cameras send JPEGs.
+    from mhri.base.opencv import cv2
+    from mhri.camera.depth_still import depth_still
+    from mhri.camera.images import FrameError
     try:
-        pixels = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_COLOR) if data else None
+        pixels = depth_still(picture.format, data) if depth else \
+            cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_COLOR) if data else None
         done, found = cv2.imencode('.jpg', pixels) if pixels is not None else (False, None)
-    except cv2.error:
-        return None  # more pixels than a jpeg can have
+    except (cv2.error, FrameError):
+        return None  # too large for a JPEG, or no picture
     return found.tobytes() if done else None
 
 
@@ -59,7 +64,7 @@ class Moment:
         self._robots = robots
 
     def _odometry(self, robot, kind):
-        """Return (Pose, its frame) by a robot's odometry, None without any."""
+        """Return (Pose, its frame) by a robot's odometry, None if it has none."""
         for name in kind.odometry:
             source = self._tap.newest(topic_of(robot, name))
             if source is None or source.fields['type'] not in MOTIONS:
@@ -77,7 +82,7 @@ class Moment:
         return None
 
     def _origins(self):
-        """Return ({robot: origin of its odometry}, the map's frame) as far as robots are placed."""
+        """Return ({robot: origin of its odometry on the map}, the map's frame)."""
         source = self._tap.newest(PLACES)
         if source is None:
             return {}, 'map'
@@ -87,13 +92,13 @@ class Moment:
                 }, message.header.frame_id
 
     def frame(self):
-        """Return the frame in which robots are placed."""
+        """Return the frame of the map."""
         return self._origins()[1] or 'map'
 
     def poses(self):
-        """Return {robot: [x [m], y [m], heading [rad], frame]} of those that are heard.
+        """Return {robot: [x [m], y [m], heading [rad], frame]} of the robots with odometry.
 
-        In the frame of the map where a robot is placed, else in that of its odometry.
+        The frame is the map's if the robot is placed on the map, else that of its odometry.
         """
         origins, map_frame = self._origins()
         found = {}
@@ -109,16 +114,18 @@ class Moment:
         return found
 
     def stills(self, stem):
-        """Yield (path in the folder, jpeg) of every camera in sight.
+        """Yield (path in the folder, JPEG) of each robot's first active camera, RGB and depth.
 
-        :param stem: what their names begin with, such as the mark's
+        :param stem: start of the file names, such as the mark's name
         """
         pictures = self._tap.pictures(IN_SIGHT_S)
         for robot, kind in list(self._robots.kinds.items()):
+            found = set()
             for topic in camera_topics(robot, kind):
-                if topic not in pictures or topic.endswith('/compressedDepth'):
+                depth = is_depth(topic)
+                if topic not in pictures or depth in found:
                     continue
-                jpeg = jpeg_of(pictures[topic].frame)
+                jpeg = jpeg_of(pictures[topic].frame, depth)
                 if jpeg is not None:
-                    yield still_name(stem, robot), jpeg
-                    break
+                    found.add(depth)
+                    yield still_name(stem, robot, depth), jpeg

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The session of this host: recorded whole, marked, told."""
+"""The session of this host: recording, marks and lines."""
 from collections import deque
 from dataclasses import dataclass, field, replace
 from datetime import datetime
@@ -12,26 +12,28 @@ import time
 import rospkg
 import rospy
 
+from mhri.base.io.files import text_in
 from mhri.graph.ros.master_api import MasterError
 from mhri.graph.ros.worker import Worker
 from mhri.recording.folder import (
-    BAG_S, CAMERA_ALL, CAMERA_RATE, CAMERA_STILLS, ERROR, EVENTS_JSONL, INFO, marks_of, read_events,
-    SessionEvent, SessionInfo, sessions_home, WARNING)
+    BAG_S, CAMERA_ALL, CAMERA_RATE, CAMERA_STILLS, ERROR, EVENTS_JSONL, INFO, is_of_mark, marks_of,
+    read_events, SessionEvent, SessionInfo, sessions_home, WARNING)
 from mhri.recording.recording import PathRefused, RecordingLimits, size_text
-from mhri.recording.ros.bag_file import words_of
+from mhri.recording.ros.bag_file import error_text
 from mhri.recording.ros.recorder import receipt_clock
+from mhri.session.flags import flags_of
 from mhri.session.ros.graph_lines import GraphLines
 from mhri.session.ros.graph_robots import GraphRobots
-from mhri.session.ros.heard import Heard
+from mhri.session.ros.inputs import SessionInputs
 from mhri.session.ros.moment import Moment
 from mhri.session.ros.session_folder import SessionFolder
 from mhri.session.ros.session_writer import SessionWriter
 from mhri.session.ros.tap import SessionTap
 from mhri.session.topics import PANEL_EVENTS
 
-# Where the folder of a recording under way is noted: whoever comes after a kill goes on with it.
+# The parameter with the folder of the current recording, to continue it after a kill.
 RECORDING = '/mhri_session/recording'
-# A mark while nothing is recorded keeps the ring, itself and so much after it [s].
+# A mark while not recording saves the ring and records for this long after it [s].
 RUN_ON_S = 30.0
 CLOSE_S = 20.0
 LOOK_S = 2.0
@@ -39,12 +41,12 @@ LOOK_S = 2.0
 
 @dataclass(frozen=True)
 class SessionOptions:
-    """What a session keeps, and where.
+    """Contents and location of the recording.
 
-    ``cameras`` is "all", "stills" or a rate [Hz] as text; ``out_of_sight``: also those that no
-    screen shows, by connections of its own; ``home`` the folder of all sessions; the ring lasts
-    ``ring_s`` [s] and takes at most ``ring_mb`` [MB], with ``ring_pictures_hz`` pictures a second
-    of each camera. A bag lasts ``bag_s`` [s] at most.
+    ``cameras`` is "all", "stills" or a rate [Hz] as text; with ``out_of_sight`` the recorder
+    connects to all cameras directly, including those that no screen shows; ``home`` is the folder
+    of all sessions. The ring holds ``ring_s`` [s], at most ``ring_mb`` [MB], with
+    ``ring_pictures_hz`` pictures per second and camera. A bag lasts at most ``bag_s`` [s].
     """
 
     cameras: str = CAMERA_ALL
@@ -58,14 +60,14 @@ class SessionOptions:
 
     @property
     def rate_hz(self):
-        """Pictures a second that are recorded of a camera; None: as they come, 0: none."""
+        """Pictures to record per second and camera; None: all, 0: none."""
         return {CAMERA_ALL: None, CAMERA_STILLS: 0.0}.get(self.cameras) \
             if self.cameras in (CAMERA_ALL, CAMERA_STILLS) else float(self.cameras)
 
 
 @dataclass(frozen=True)
 class SessionStatus:
-    """What the session does now; as in ``mhri/SessionState``."""
+    """The state of the session, as in ``mhri/SessionState``."""
 
     recording: bool = False
     folder: str = ''
@@ -78,7 +80,7 @@ class SessionStatus:
 
 
 class Session:
-    """Records, marks and tells. :meth:`record`, :meth:`mark` and :meth:`note` may block on a disk.
+    """Records, marks and publishes lines; :meth:`record`, :meth:`mark`, :meth:`note` may block.
 
     :param types: {name: RobotType}
     :param options: :class:`SessionOptions`
@@ -89,17 +91,17 @@ class Session:
         self.options = options
         self._publish = publish
         self.robots = GraphRobots(types)
-        self.lines = GraphLines(self._tell)
+        self.lines = GraphLines(self._append)
         self._clock_ns = receipt_clock()
         self.tap = SessionTap(rospy.get_name() + '_recorder', options.limits, options.ring_s,
                               round(options.ring_mb * 1e6), self.lines.watched, self._clock_ns,
                               options.bag_s)
-        self._heard = Heard(self.tap, self.robots, self.lines.follow,
-                            options.out_of_sight)
+        self._inputs = SessionInputs(self.tap, self.robots, self.lines.follow,
+                                     options.out_of_sight)
         self._moment = Moment(self.tap, self.robots)
         self._worker = Worker('session', self._look, LOOK_S)
         self._life = threading.RLock()
-        # Of the lines: those before a recording go into it, none twice.
+        # Guards the lines: each earlier line goes into a new recording exactly once.
         self._saying = threading.Lock()
         self._recent = deque()
         self._folder = None
@@ -107,10 +109,12 @@ class Session:
         self._until_s = None
         self._begun_s = 0.0
         self._marks = 0
+        # The lines about marks of this session, or of the last one.
+        self._of_marks = []
         self._status = SessionStatus()
 
     def start(self):
-        """Join the graph; go on with a recording that was killed a moment ago.
+        """Join the graph; continue a recording that was killed recently.
 
         :raises OSError: no address is available
         """
@@ -121,13 +125,13 @@ class Session:
         self._worker.start()
         for job in (self._go_on, gone_on.set, self._look):
             self._worker.do(job)
-        # Whoever asked before this is known would begin a second session, or end none.
+        # An earlier request would begin a second session, or find none to end.
         while not gone_on.wait(0.1) and not rospy.is_shutdown():
             pass
 
     @property
     def pictures_hz(self):
-        """What screens are to pass on of each picture [1/s]: -1: all, 0: none."""
+        """The rate at which screens relay pictures [1/s]; -1: all, 0: none."""
         if self.options.out_of_sight:
             return 0.0
         rate_hz = self.options.rate_hz
@@ -136,7 +140,7 @@ class Session:
         return -1.0 if rate_hz is None else rate_hz
 
     def status(self):
-        """Return the :class:`SessionStatus` of this moment; cheap."""
+        """Return the current :class:`SessionStatus`; cheap."""
         writer, status = self._writer, self._status
         if writer is None:
             return status
@@ -146,7 +150,7 @@ class Session:
                        problem=writer.failure or writer.warning or status.problem)
 
     def record(self, on):
-        """Begin to record, or end it; return (whether it is so, a sentence)."""
+        """Start or stop recording; return (success, a sentence)."""
         with self._life:
             try:
                 if on:
@@ -154,13 +158,13 @@ class Session:
                     return True, 'recording to ' + (self._folder or self._begin()).path
                 return (True, self._end()) if self._folder else (True, 'nothing was recorded')
             except (PathRefused, OSError) as error:
-                text = 'not recorded: {}'.format(words_of(error))
+                text = 'not recorded: {}'.format(error_text(error))
                 self._status = replace(self._status, problem=text)
                 rospy.logerr('%s', text)
                 return False, text
 
     def mark(self, text=''):
-        """Mark this moment; return (whether it is kept, a sentence, the mark's name)."""
+        """Mark this moment; return (success, a sentence, the mark's name)."""
         with self._life:
             try:
                 if self._folder is None:
@@ -171,15 +175,22 @@ class Session:
                 self._marks += 1
                 name = 'm{}'.format(self._marks)
                 poses, stills = self._moment.poses(), self._keep_stills(name)
-                self._write('mark', INFO, '', text.strip() or 'mark {}'.format(self._marks),
+                # At the robot that is driven, unless a screen reports which one it showed.
+                robot = next(iter(self.lines.watch.state()['selected'] or ()), '')
+                self._write('mark', INFO, robot, text.strip() or 'mark {}'.format(self._marks),
                             {'id': name, 'poses': poses, 'stills': stills})
             except (PathRefused, OSError) as error:
-                return False, 'not marked: {}'.format(words_of(error)), ''
+                return False, 'not marked: {}'.format(error_text(error)), ''
             return True, 'mark {}, {} still{}'.format(
                 self._marks, len(stills), '' if len(stills) == 1 else 's'), name
 
+    def flags(self):
+        """Return (the frame of the map, the flags in it) of this session, or of the last one."""
+        frame = self._moment.frame()
+        return frame, flags_of(marks_of(list(self._of_marks)), frame)
+
     def note(self, name, text):
-        """Write the text of a mark, '' for the newest; return (whether it is kept, a sentence)."""
+        """Save the text of a mark (name '': the newest); return (success, a sentence)."""
         with self._life:
             name = name or 'm{}'.format(self._marks)
             if self._folder is None or not any(name == 'm{}'.format(number + 1)
@@ -188,11 +199,11 @@ class Session:
             try:
                 self._write('note', INFO, '', text.strip(), {'mark': name})
             except OSError as error:
-                return False, 'not noted: {}'.format(words_of(error))
+                return False, 'not noted: {}'.format(error_text(error))
             return True, 'noted at mark {}'.format(name[1:])
 
     def still(self):
-        """Keep a still of every camera in sight; return (whether it is kept, a sentence)."""
+        """Save a still of every active camera; return (success, a sentence)."""
         with self._life:
             if self._folder is None:
                 return False, 'no session is recorded'
@@ -204,23 +215,23 @@ class Session:
                 self._write('still', INFO, '', '{} stills'.format(len(stills)),
                             {'stills': stills, 'poses': self._moment.poses()})
             except OSError as error:
-                return False, 'no still: {}'.format(words_of(error))
+                return False, 'no still: {}'.format(error_text(error))
             return True, '{} stills saved in {}'.format(len(stills), self._folder.path)
 
-    def look(self):
-        """See to what time brings; call it a few times a second."""
+    def update(self):
+        """Handle failures, timeouts and silent robots; call it a few times a second."""
         writer = self._writer
         if writer is not None and writer.failure:
             self._worker.do(self._end_failed, writer)
         elif self._until_s is not None and time.monotonic() > self._until_s:
             self._worker.do(self._end_run_on)
         if PANEL_EVENTS in self.robots.published:
-            return  # a screen says so itself
-        self.lines.silence(self._heard.silence_s(self._clock_ns()), time.monotonic(),
+            return  # a screen reports it itself
+        self.lines.silence(self._inputs.silence_s(self._clock_ns()), time.monotonic(),
                            self._clock_ns() * 1e-9)
 
     def close(self):
-        """Close what is open, and leave the graph."""
+        """End the recording and leave the graph."""
         with self._life:
             if self._folder is not None:
                 self._end()
@@ -228,7 +239,7 @@ class Session:
         self.tap.close()
 
     def _keep_stills(self, stem):
-        """Write a still of every camera in sight; return their paths in the folder.
+        """Write a still of every active camera; return their paths in the folder.
 
         :raises OSError: the disk failed
         """
@@ -245,9 +256,9 @@ class Session:
                            recorded, options.rate_hz or 0.0, dict(self.robots.entries))
 
     def _begin(self):
-        """Make a folder and record into it.
+        """Create a folder and record into it.
 
-        :raises PathRefused, OSError: it cannot be written
+        :raises PathRefused, OSError: the folder cannot be written
         """
         usual = sessions_home(os.environ)
         home, note = self.options.home or usual, ''
@@ -268,7 +279,7 @@ class Session:
         writer = SessionWriter(folder.path, number, self.options.limits, lambda: None)
         with self._saying:
             for event in self._recent:
-                folder.tell(event)
+                folder.append(event)
             self._folder, self._writer, self._marks = folder, writer, 0
         self._begun_s = time.monotonic()
         self._status = SessionStatus(True, folder.path, time.time(), problem=note)
@@ -279,7 +290,7 @@ class Session:
         rospy.loginfo('recording to %s', folder.path)
 
     def _go_on(self):
-        """Go on with the recording that a kill of this node has interrupted."""
+        """Continue the recording interrupted by a kill of this node."""
         path = rospy.get_param(RECORDING, '')
         folder = SessionFolder.go_on(path) if isinstance(path, str) and path else None
         if folder is None:
@@ -288,25 +299,24 @@ class Session:
             if self._folder is not None:
                 return
             try:
-                with open(os.path.join(path, EVENTS_JSONL), encoding='utf-8',
-                          errors='replace') as file:
-                    events = read_events(file.read())
+                self._of_marks = list(filter(is_of_mark, read_events(
+                    text_in(os.path.join(path, EVENTS_JSONL)))))
                 self._open(folder, folder.next_bag())
-                self._marks = len(marks_of(events))
-                # The last line may have been cut off in the middle.
+                self._marks = len(marks_of(self._of_marks))
+                # The kill may have cut off the last line.
                 folder.end_line()
                 self._write('record', WARNING, '',
                             'the recorder was killed: a moment is missing', {'lost': True})
             except OSError as error:
-                rospy.logerr('the recording cannot go on: %s', words_of(error))
+                rospy.logerr('the recording cannot go on: %s', error_text(error))
 
     @staticmethod
     def _note_folder(path):
-        """Note the folder that is recorded to, '' for none (blocking: it asks the master)."""
+        """Store the folder of the recording on the master, '' for none (blocking)."""
         rospy.set_param(RECORDING, path)
 
     def _end(self, reason=''):
-        """End the recording, close everything, and say what there is (under the lock)."""
+        """End the recording, close its files, and return a summary (under the lock)."""
         folder, writer = self._folder, self._writer
         try:
             self._write('end', ERROR if reason else INFO, '', reason or 'recording ends')
@@ -339,7 +349,7 @@ class Session:
                 self._end()
 
     def _set_pictures(self):
-        """Keep as many pictures as now belong into ring or bag."""
+        """Set the tap's picture rate for the ring or the recording."""
         rate_hz = self.options.rate_hz
         idle_hz = self.options.ring_pictures_hz
         if self._folder is None and rate_hz != 0.0:
@@ -347,39 +357,43 @@ class Session:
         self.tap.keep_pictures(rate_hz)
 
     def _look(self):
-        """Find robots and topics; hear them (blocking)."""
+        """Find robots and topics, and subscribe them (blocking)."""
         try:
-            new = self.robots.look()
+            new = self.robots.scan()
         except MasterError as error:
             rospy.logdebug('%s', error)
             return
-        self._heard.want()
+        self._inputs.update()
         for robot in new:
-            self._tell('found', INFO, robot, 'joins the session', data=self.robots.entries[robot])
+            self._append('found', INFO, robot, 'joins the session', self.robots.entries[robot])
 
-    def _tell(self, kind, severity, robot, text, wall_s=None, ros_s=None, data=None):
-        """Keep a line as far as a session is recorded."""
+    def _append(self, *line):
+        """Call :meth:`_write` with a line; log a failure of the disk."""
         try:
-            self._write(kind, severity, robot, text, data, wall_s, ros_s)
+            self._write(*line)
         except OSError as error:
-            rospy.logerr_throttle(10.0, 'a line is not kept: {}'.format(words_of(error)))
+            rospy.logerr_throttle(10.0, 'a line is not kept: {}'.format(error_text(error)))
 
     def _write(self, kind, severity, robot, text, data=None, wall_s=None, ros_s=None):
-        """Write a line, or remember it for as long as the ring lasts.
+        """Publish and write a line; while not recording, keep it as long as the ring lasts.
 
         :raises OSError: the disk failed
         """
         event = SessionEvent(wall_s or time.time(), ros_s or self._clock_ns() * 1e-9, kind, text,
                              severity, robot, data or {})
+        if kind == 'start':
+            self._of_marks = []
+        elif is_of_mark(event):
+            self._of_marks.append(event)
         self._publish(event)
         with self._saying:
             folder = self._folder
             if folder is not None:
                 if kind == 'end':
-                    # Nothing is said behind it.
+                    # No line may follow the last one.
                     self._folder = None
                     self._recent.clear()
-                folder.tell(event)
+                folder.append(event)
                 return
             self._recent.append(event)
             while self._recent[0].wall < event.wall - self.options.ring_s:

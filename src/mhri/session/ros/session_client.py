@@ -1,10 +1,13 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A screen's side of the session: asks for recordings and marks, tells its events and pictures.
+"""A screen's client of the session: requests recordings and marks, sends events.
 
-Publishes ``/panel/events`` (``mhri/SessionEvent``) and ``/panel/pictures`` (``mhri/SeenPicture``);
-subscribes ``/mhri_session/state``; calls ``/mhri_session/record``, ``mark``, ``note``, ``still``.
+Publishes ``/panel/events`` (``mhri/SessionEvent``), and tells the relay of pictures how many the
+recorder keeps; subscribes ``/mhri_session/state`` and ``/mhri_session/marks`` (``mhri/Places``);
+calls ``/mhri_session/record``, ``mark``, ``note``, ``still``.
 """
+import json
+import math
 import queue
 import time
 
@@ -12,87 +15,100 @@ import rospy
 from std_srvs.srv import SetBool, Trigger
 
 from mhri.base.text import tidy_text
-from mhri.camera.ros.passed_on import PASSED_ON
+from mhri.base.views import FlagView
+from mhri.camera.ros.picture_relay import PICTURE_RELAY
 from mhri.graph.ros.node_client import NodeClient
-from mhri.msg import SeenPicture, SessionEvent, SessionState
-from mhri.session.topics import PANEL_EVENTS, PICTURES
+from mhri.msg import Places, SessionEvent, SessionState
+from mhri.session.flags import MAX_FLAGS
+from mhri.session.topics import PANEL_EVENTS
 from mhri.session.view import SessionView, SILENT_S
 from mhri.srv import AddNote, MarkSession
 
-# A call waits so long for its service [s].
+# Timeout of a service call [s].
 CALL_S = 2.0
 
 
 class SessionClient:
-    """What a screen knows of the session; every method returns at once.
+    """The client of the session recorder; every method returns at once.
 
-    :param clock: function that returns seconds, monotonic
-    ``answers`` is a queue of (what was asked: "record", "mark", "note", "still"; whether it is
-    done; a sentence; the mark's name or '').
+    ``answers`` is a queue of (request: "record", "mark", "note" or "still"; success; a sentence;
+    the mark's name or '').
     """
 
-    def __init__(self, clock=time.monotonic):
-        self._clock = clock
+    def __init__(self):
         self._node = NodeClient('session_client', wait_s=CALL_S)
         self._state = None
         self._heard_at = 0.0
         self._gone = False
-        self._events = self._pictures = self._subscriber = None
+        self._flags = ()
+        self._events = self._subscriber = None
         self.answers = queue.Queue()
 
     def start(self):
-        """Begin, on a worker; call it after ``rospy.init_node``."""
+        """Connect, on a worker; call it after ``rospy.init_node``."""
         self._node.do(self._connect)
 
     def _connect(self):
-        """Open every topic (on the worker: it asks the master)."""
+        """Open every topic (on the worker, because it calls the master)."""
         self._events = self._node.advertise(PANEL_EVENTS, SessionEvent, queue_size=200)
-        self._pictures = self._node.advertise(PICTURES, SeenPicture, queue_size=4)
-        self._subscriber = self._node.subscribe('/mhri_session/state', SessionState, self._hear, 5)
-        PASSED_ON.open(self._pictures)
+        self._subscriber = self._node.subscribe('/mhri_session/state', SessionState,
+                                                self._on_message, 5)
+        self._node.subscribe('/mhri_session/marks', Places, self._on_marks)
 
-    def _hear(self, message):
-        self._heard_at = self._clock()
+    def _on_message(self, message):
+        self._heard_at = time.monotonic()
         self._state = message
         self._gone = False
-        PASSED_ON.keep(message.pictures_hz)
+        PICTURE_RELAY.limit(self, message.pictures_hz)
+
+    def _on_marks(self, message):
+        frame = tidy_text(message.header.frame_id)
+        self._flags = tuple(
+            FlagView(tidy_text(mark.name), mark.pose.x, mark.pose.y, frame)
+            for mark in message.marks[-MAX_FLAGS:]
+            if math.isfinite(mark.pose.x) and math.isfinite(mark.pose.y))
+
+    def flags(self):
+        """Return the flags of the session's marks, :class:`mhri.base.views.FlagView` values."""
+        return self._flags
 
     def view(self):
-        """Return the :class:`SessionView` of this moment."""
+        """Return the current :class:`SessionView`."""
         said, subscriber = self._state, self._subscriber
         if said is None or subscriber is None:
             return SessionView()
         if not subscriber.get_num_connections():
-            # What the next one does is unknown until it has said so.
+            # The state of a new recorder is unknown until its first message.
             self._gone = True
+            PICTURE_RELAY.limit(self, 0.0)
         there = not self._gone and not (
-            said.recording and self._clock() - self._heard_at > SILENT_S)
+            said.recording and time.monotonic() - self._heard_at > SILENT_S)
         return SessionView(there, said.recording, tidy_text(said.folder), said.lasts.to_sec(),
                            said.bytes, said.marks, tidy_text(said.problem))
 
-    def tell(self, events):
-        """Pass on new events of the list, :class:`mhri.events.events.Event` values."""
+    def publish_events(self, events):
+        """Publish new :class:`mhri.events.events.Event` values of the event list."""
         if self._events is None:
             return
         for event in events:
             self._events.publish(SessionEvent(
                 rospy.Time.from_sec(event.time_s), event.kind, event.severity, event.robot,
-                event.text, ''))
+                event.text, json.dumps(event.data) if event.data else ''))
 
     def record(self, on):
-        """Ask to record the session, or to end it."""
+        """Request to start or stop the recording."""
         self._ask('record', SetBool, on)
 
     def mark(self, text=''):
-        """Ask to mark this moment."""
+        """Request a mark."""
         self._ask('mark', MarkSession, text)
 
     def note(self, name, text):
-        """Ask to write the text of a mark."""
+        """Request to save the text of a mark."""
         self._ask('note', AddNote, name, text)
 
     def still(self):
-        """Ask for a still of every camera in sight."""
+        """Request a still of every active camera."""
         self._ask('still', Trigger)
 
     def _ask(self, name, kind, *words):
@@ -106,6 +122,6 @@ class SessionClient:
             (name, answer.success, tidy_text(answer.message), getattr(answer, 'id', '')))
 
     def close(self):
-        """Pass nothing on any more; returns at once."""
-        PASSED_ON.open(None)
+        """Unregister everything; returns at once."""
+        PICTURE_RELAY.limit(self, 0.0)
         self._node.close(forget=True)

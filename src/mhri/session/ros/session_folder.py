@@ -1,23 +1,24 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The folder of a session on the disk: made, added to, never overwritten."""
+"""The folder of a session on the disk: created and appended to, never overwritten."""
+from contextlib import suppress
 import os
 import threading
 import time
 
 from mhri.recording.folder import (
-    event_line, EVENTS_JSONL, folder_name, info_text, next_bag, SESSION_YAML, STILLS)
+    event_line, EVENTS_JSONL, folder_name, free_names, info_text, next_bag, SESSION_YAML, STILLS)
 from mhri.recording.recording import ACTIVE, PathRefused, system_folder
-from mhri.recording.ros.bag_file import words_of
+from mhri.recording.ros.bag_file import error_text
 
-# A recording that was killed longer ago is not gone on with [s].
+# A killed recording is continued only within this time [s].
 GOES_ON_S = 120.0
 
 
 class SessionFolder:
-    """A folder with its events; bags are written by others.
+    """The folder and its event log; a session writer adds the bags.
 
-    :param path: of a folder that exists
+    :param path: path of an existing folder
     """
 
     def __init__(self, path):
@@ -27,12 +28,12 @@ class SessionFolder:
 
     @classmethod
     def make(cls, home, when, info):
-        """Make the folder of a session that begins now.
+        """Create the folder of a new session.
 
-        :param home: path of the folder of all sessions, made if missing
+        :param home: path of the folder of all sessions, created if missing
         :param when: a :class:`datetime.datetime` in local time
         :param info: :class:`mhri.recording.folder.SessionInfo`
-        :raises PathRefused: files do not go there; the text says why
+        :raises PathRefused: the folder cannot be written; the text gives the reason
         """
         try:
             top = system_folder(os.path.realpath(home))
@@ -45,21 +46,18 @@ class SessionFolder:
                 file.write(info_text(info))
             return cls(path)
         except (OSError, ValueError) as error:
-            raise PathRefused('cannot write to {}: {}'.format(home, words_of(error)))
+            raise PathRefused('cannot write to {}: {}'.format(home, error_text(error)))
 
     @staticmethod
     def _make(home, when):
-        while True:
-            path = os.path.join(home, folder_name(when, os.listdir(home)))
-            try:
-                os.mkdir(path)
-                return path
-            except FileExistsError:
-                continue
+        for name in free_names(folder_name(when)):
+            with suppress(FileExistsError):
+                os.mkdir(os.path.join(home, name))
+                return os.path.join(home, name)
 
     @classmethod
     def go_on(cls, path):
-        """Return the folder of a recording that was killed a moment ago, else None."""
+        """Return the folder of a recording killed at most :data:`GOES_ON_S` ago, else None."""
         try:
             active = [os.path.join(path, name) for name in os.listdir(path)
                       if name.endswith(ACTIVE)]
@@ -69,13 +67,13 @@ class SessionFolder:
             return None
 
     def next_bag(self):
-        """Return the number of the bag to begin."""
+        """Return the number of the next bag."""
         return next_bag(os.listdir(self.path))
 
-    def tell(self, event):
-        """Write a :class:`mhri.recording.folder.SessionEvent`; it is kept on return.
+    def append(self, event):
+        """Write and flush a :class:`mhri.recording.folder.SessionEvent`.
 
-        :raises OSError: it cannot be written
+        :raises OSError: the event cannot be written
         """
         with self._lock:
             if not self._events.closed:
@@ -83,9 +81,9 @@ class SessionFolder:
                 self._events.flush()
 
     def end_line(self):
-        """End a line that a killed program has left half; nothing where it left none.
+        """Terminate the last line if a killed program left it incomplete.
 
-        :raises OSError: it cannot be read or written
+        :raises OSError: the log cannot be read or written
         """
         with self._lock, open(self._events.name, 'rb') as file:
             size = file.seek(0, os.SEEK_END)
@@ -95,17 +93,17 @@ class SessionFolder:
                 self._events.flush()
 
     def keep(self, name, data):
-        """Write a file of the folder, e.g. a still.
+        """Write a new file into the folder, e.g. a still.
 
-        :raises OSError: it cannot be written, or exists
+        :raises OSError: the file exists or cannot be written
         """
         with open(os.path.join(self.path, name), 'xb') as file:
             file.write(data)
 
     def close(self):
-        """Close the events."""
+        """Close the event log."""
         with self._lock:
             try:
                 self._events.close()
             except OSError:
-                pass  # a full disk has no room for the last line: tell() has said so
+                pass  # a full disk has no room for the last line: append() has reported it

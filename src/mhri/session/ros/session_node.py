@@ -1,43 +1,46 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The session on the graph: services, what it does now, and its lines."""
+"""The ROS interface of the session: services, state and lines."""
 import json
 
 from diagnostic_msgs.msg import DiagnosticStatus
+from geometry_msgs.msg import Pose2D
 import rospy
 from std_srvs.srv import SetBool, SetBoolResponse, Trigger, TriggerResponse
 
 from mhri.graph.ros.diagnostics import publish_diagnostics
-from mhri.msg import SessionEvent, SessionState
+from mhri.msg import Mark, Places, SessionEvent, SessionState
 from mhri.recording.recording import size_text
 from mhri.srv import AddNote, AddNoteResponse, MarkSession, MarkSessionResponse
 
-# How often it is looked at, and how often it is told while it is recorded [s].
-LOOK_S, TELL_S = 0.25, 1.0
+# Intervals of updating the session, and of publishing its state while recording [s].
+LOOK_S, PUBLISH_S = 0.25, 1.0
 
 
 class SessionNode:
-    """What ``/mhri_session`` offers.
+    """The node ``/mhri_session``.
 
     Services ``record`` (``std_srvs/SetBool``), ``mark`` (``mhri/MarkSession``), ``note``
     (``mhri/AddNote``), ``still`` (``std_srvs/Trigger``). Topics ``state`` (``mhri/SessionState``,
-    latched, on change and at 1 Hz while it records) and ``events`` (``mhri/SessionEvent``).
+    latched, on change and at 1 Hz while recording), ``events`` (``mhri/SessionEvent``) and
+    ``marks`` (``mhri/Places``, latched, on change: the flags of the session's marks on the map).
 
     :param make: :class:`mhri.session.ros.session.Session`, called with ``types``, ``options`` and
-        a function of an event
-    :param at_once: begin to record at once
+        a callback for events
+    :param at_once: start recording at once
     """
 
     def __init__(self, make, types, options, at_once=False):
         self._events = rospy.Publisher('~events', SessionEvent, queue_size=200)
         self._state = rospy.Publisher('~state', SessionState, queue_size=1, latch=True)
-        self.session = make(types, options, self._tell)
+        self._marks = rospy.Publisher('~marks', Places, queue_size=1, latch=True)
+        self.session = make(types, options, self._publish_event)
         self._at_once = at_once
-        self._told = None
-        self._told_s = 0.0
+        self._published = self._flags = None
+        self._published_s = 0.0
 
     def run(self):
-        """Serve until shut down; then close everything."""
+        """Serve until shutdown; then close the session."""
         session = self.session
         session.start()
         rospy.Service('~record', SetBool, lambda asked: SetBoolResponse(
@@ -52,27 +55,39 @@ class SessionNode:
             session.record(True)
         wait = rospy.rostime.wallsleep
         while not rospy.is_shutdown():
-            session.look()
-            self._tell_state()
+            session.update()
+            self._publish_state()
+            self._publish_marks()
             wait(LOOK_S)
         session.close()
 
-    def _tell(self, event):
+    def _publish_event(self, event):
         """Publish an event of the session."""
         if not rospy.is_shutdown():
             self._events.publish(SessionEvent(
                 rospy.Time.from_sec(event.wall), event.kind, event.severity, event.robot,
                 event.text, json.dumps(event.data) if event.data else ''))
 
-    def _tell_state(self):
-        """Publish what it does, where that has changed or a second is over."""
+    def _publish_marks(self):
+        """Publish the flags of the marks on change."""
+        frame, flags = self.session.flags()
+        if (frame, flags) != self._flags:
+            self._flags = frame, flags
+            message = Places(marks=[Mark(flag.label, Pose2D(flag.x_m, flag.y_m, 0.0))
+                                    for flag in flags])
+            message.header.frame_id = frame
+            self._marks.publish(message)
+
+    def _publish_state(self):
+        """Publish the state on change, and once a second while recording."""
         status = self.session.status()
-        told = (status.recording, status.folder, status.marks, status.problem,
+        news = (status.recording, status.folder, status.marks, status.problem,
                 tuple(self.session.robots.kinds), self.session.pictures_hz)
         now_s = rospy.get_rostime().to_sec()
-        if told == self._told and not (status.recording and abs(now_s - self._told_s) >= TELL_S):
+        if news == self._published and not (
+                status.recording and abs(now_s - self._published_s) >= PUBLISH_S):
             return
-        self._told, self._told_s = told, now_s
+        self._published, self._published_s = news, now_s
         message = SessionState(
             recording=status.recording, folder=status.folder,
             since=rospy.Time.from_sec(status.since),

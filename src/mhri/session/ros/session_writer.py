@@ -1,23 +1,23 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The thread that writes a session's bags, one after the other."""
+"""The thread that writes a session's bags, one after another."""
 import os
 
 from mhri.recording.folder import bag_name
-from mhri.recording.ros.bag_file import BagFile, words_of
+from mhri.recording.ros.bag_file import BagFile, error_text
 from mhri.recording.ros.bag_writer import BagWriter
 
 
 class NewBag(list):
-    """What :meth:`SessionWriter.put` takes to begin the next bag: the messages it begins with."""
+    """The first messages of a new bag; :meth:`SessionWriter.put` then begins the next bag."""
 
 
 class SessionWriter(BagWriter):
-    """Writes into ``NNNN.bag`` of a folder; the next one when it is given a :class:`NewBag`.
+    """Writes ``NNNN.bag`` files into a folder; a :class:`NewBag` begins the next one.
 
     :param folder: path of the session
-    :param number: of the first bag
-    :raises OSError: the first bag cannot be made
+    :param number: number of the first bag
+    :raises OSError: the first bag cannot be created
     """
 
     def __init__(self, folder, number, limits, on_trouble):
@@ -32,7 +32,7 @@ class SessionWriter(BagWriter):
 
     @property
     def written(self):
-        """How much is in the bags: (messages, bytes)."""
+        """The contents of the bags so far: (messages, bytes)."""
         messages, size = self._before
         return messages + self.file.messages, size + self.file.size
 
@@ -41,14 +41,14 @@ class SessionWriter(BagWriter):
             try:
                 self._begin_next()
             except OSError as error:
-                self._fail(words_of(error))
+                self._fail(error_text(error))
                 return False
         return super()._write(messages) if messages else True
 
     def _begin_next(self):
-        """Close this bag and make the next one.
+        """Close the current bag and begin the next one.
 
-        :raises OSError: the disk has no room for it
+        :raises OSError: the next bag cannot be created
         """
         self._number += 1
         after = self._make(self._folder, self._number)

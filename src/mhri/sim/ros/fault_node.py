@@ -1,14 +1,14 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The faults of a simulated robot on ROS: the service that asks for them, and what they keep back.
+"""The faults of a simulated robot on ROS: the service to set them, and their effects.
 
-``/<robot>/base/set_fault`` (``mhri/SetFault``); the table is :mod:`mhri.sim.faults`. A robot
-that has no such fault, e.g. no battery to fall, refuses it. ``/<robot>/base/faults``
-(``std_msgs/String``, latched, on change) says what fails now, a phrase a line, and never fails.
+Serves ``/<robot>/base/set_fault`` (``mhri/SetFault``) with the faults of :mod:`mhri.sim.faults`.
+A fault that does not apply to the robot, e.g. of a missing battery, is refused. Publishes the
+active faults on ``/<robot>/base/faults`` (``std_msgs/String``, latched, on change), a phrase a
+line, which no fault affects.
 """
 import copy
 import functools
-import math
 import os
 import random
 import sys
@@ -28,14 +28,14 @@ from mhri.sim.world import World, WorldFull, WorldRefused
 from mhri.srv import SetFault, SetFaultResponse
 
 PERSON = BodyType(0.25, 1.7, 1.0, 1.0, 1.0, 1.0, 1.0, 0.1, 1.0, colour=(60, 90, 160))
-# How the person's place in the shared world is called: no robot can have such a name.
+# Name of the person's slot in the shared world; not a valid name of a robot.
 PERSON_NAME = 'person {}'
-# Whoever waits for a frozen computer gives up sooner.
+# Longer than any client's timeout for a frozen computer.
 FROZEN_S = 60.0
 
 
 class Person:
-    """Somebody who stands in the way of one robot, and whom all others see, too.
+    """A person in the way of one robot, visible to all robots.
 
     :param path: of the shared world
     """
@@ -45,21 +45,21 @@ class Person:
         self._place = None
 
     def stand(self, x, y):
-        """Stand at x, y [m]."""
+        """Place the person at x, y [m]."""
         self._place = x, y
         self.stay()
 
     def stay(self):
-        """Say again where, as whoever is still there does."""
+        """Refresh the pose, which would otherwise expire."""
         self._world.publish(*self._place, 0.0)
 
     def leave(self):
-        """Go away."""
+        """Remove the person."""
         self._world.leave()
 
 
 class Healthy:
-    """A robot of which nothing ever fails."""
+    """A robot without faults."""
 
     def stamp(self):
         """Return the time of its clock."""
@@ -71,13 +71,13 @@ class Healthy:
 
 
 class Failing:
-    """Whatever fails of one robot: what it sends and is sent goes through here.
+    """The faults of one robot; all its messages and commands pass through this object.
 
     :param name: the robot
     :param template: :class:`mhri.base.robot_types.RobotType`
     :param body: :class:`mhri.sim.body.Body`
     :param world_path: of the building's shared world
-    :param distance: function (x, y) -> metres to the nearest fixed thing
+    :param distance: function (x, y) -> metres to the nearest fixed obstacle
     """
 
     def __init__(self, name, template, body, world_path, distance, clock=time.monotonic):
@@ -97,7 +97,7 @@ class Failing:
         self._told, self._publisher = None, None
 
     def serve(self):
-        """Offer service and topic; call it after ``rospy.init_node``."""
+        """Start the service and the topic; to be called after ``rospy.init_node``."""
         self._publisher = rospy.Publisher('~faults', String, queue_size=10, latch=True)
         answer_late(self._wait_for_link)
         rospy.Service('~set_fault', SetFault, self._on_call)
@@ -109,12 +109,12 @@ class Failing:
         except (FaultRefused, WorldFull, WorldRefused, OSError) as error:
             return SetFaultResponse(False, short(error))
         return SetFaultResponse(True, '{}: {}'.format(
-            self._name, '; '.join(self._book.words(self._clock())) or 'nothing fails'))
+            self._name, '; '.join(self._book.words(self._clock())) or 'no faults active'))
 
     def _change(self, request):
-        """Begin or end a fault.
+        """Start or end a fault.
 
-        :raises FaultRefused: see there
+        :raises FaultRefused: the request is invalid, or does not apply to this robot
         """
         key = request.fault
         with self._lock:
@@ -133,17 +133,16 @@ class Failing:
             if key == 'person':
                 self._put_person(self._book.value(key, now))
             elif key == 'node_dead':
-                # Not before the caller has its answer.
+                # Delayed until the caller has received the response.
                 threading.Timer(0.2, self._die, [checked_duration(fault, request.duration_s)]
                                 ).start()
 
     def _put_person(self, ahead):
-        """Put somebody before the robot, so many metres from its front.
+        """Put a person in front of the robot, at a distance [m] from its front.
 
-        :raises FaultRefused: a wall is there
+        :raises FaultRefused: an obstacle is there
         """
-        body, away = self._body, ahead + self._body.type.radius_m + PERSON.radius_m
-        x, y = body.x + away * math.cos(body.yaw), body.y + away * math.sin(body.yaw)
+        x, y = self._body.ahead(ahead + self._body.type.radius_m + PERSON.radius_m)
         if self._distance(x, y) < PERSON.radius_m:
             self._book.end('person')
             raise FaultRefused('person: there is no room {:g} m before {}: choose another '
@@ -152,7 +151,7 @@ class Failing:
         self._person.stand(x, y)
 
     def _die(self, duration_s):
-        """End as a crashed driver does, without a word; come back after a while, standing here."""
+        """Exit like a crashed driver, without notice; restart later, at this pose."""
         body = self._body
         place = ['_{}:={!r}'.format(key, getattr(body, key)) for key in ('x', 'y', 'yaw')]
         arguments = [word for word in sys.argv
@@ -161,7 +160,7 @@ class Failing:
         os.execv(waiting[0], waiting)
 
     def _wait_for_link(self):
-        """Wait as long as a question and its answer are under way."""
+        """Wait for the delay of a request and its answer."""
         delay_s = self._book.value('delay', self._clock()) or 0.0
         given_up = self._clock() + FROZEN_S
         time.sleep(2.0 * delay_s)
@@ -169,7 +168,7 @@ class Failing:
             time.sleep(0.02)
 
     def has(self, key):
-        """Tell whether the robot has a fault now."""
+        """Return whether the robot has a fault now."""
         return self._book.has(key, self._clock())
 
     def stamp(self):
@@ -178,61 +177,60 @@ class Failing:
         return rospy.Time.now() + rospy.Duration(off_s) if off_s else rospy.Time.now()
 
     def battery_per_s(self):
-        """Return how much of its charge it loses beyond what is usual, each second."""
+        """Return the extra loss of charge per second."""
         return (self._book.value('battery_falling', self._clock()) or 0.0) / 100.0 / 60.0
 
     def send(self, publisher, message, kind=''):
-        """Publish a message, unless a fault keeps it; call it on any thread.
+        """Publish a message, delayed or dropped by faults; thread-safe.
 
-        :param kind: 'odometry', 'camera' or 'scan' for what falls silent by itself
+        :param kind: 'odometry', 'camera' or 'scan' for streams that can fail alone
         """
         now = self._clock()
         if kind and self._book.has(kind + '_silent', now) or self.has('computer_frozen'):
             return
-        delay_s, loss = self._link(now)
+        delay_s, loss = self._book.link(now)
         if not (delay_s or loss or self._out):
             publisher.publish(message)
             return
         with self._lock:
-            # Its owner fills the same message again.
+            # A copy, since the caller reuses the message.
             kept = functools.partial(publisher.publish, copy.deepcopy(message))
             if not self._out.put(kept, now, delay_s, loss):
                 skip_number(publisher)
 
-    def _link(self, now):
-        """Return delay [s] and share of loss of the link, each way."""
-        return (self._book.value('delay', now) or 0.0,
-                (self._book.value('loss', now) or 0.0) / 100.0)
+    def command(self, velocity):
+        """Pass a command to the body, subject to faults; return whether it is accepted."""
+        self.receive(lambda now: self._body.command(
+            velocity.linear_mps, velocity.angular_rad_s, now, velocity.lateral_mps))
+        return velocity.is_finite()
 
-    def command(self, linear, angular):
-        """Hand a command to the body as soon as a fault lets it; return whether it is accepted."""
+    def receive(self, act):
+        """Call a function of the time [s] for a message that came; delayed or dropped by faults."""
         now = self._clock()
         if self.has('computer_frozen'):
-            return True
-        delay_s, loss = self._link(now)
+            return
+        delay_s, loss = self._book.link(now)
         if not (delay_s or loss or self._in):
-            return self._body.command(linear, angular, now)
+            act(now)
+            return
         with self._lock:
-            self._in.put((linear, angular), now, delay_s, loss)
-        return math.isfinite(linear) and math.isfinite(angular)
+            self._in.put(act, now, delay_s, loss)
 
     def step(self):
-        """Carry on with what takes time; call it before each step of the body."""
+        """Advance the faults; to be called before each step of the body."""
         now, body = self._clock(), self._body
         with self._lock:
             messages = [] if self.has('computer_frozen') else self._out.take(now)
-            commands = self._in.take(now)
+            received = self._in.take(now)
             if self._person is not None:
                 self._care_for_person(now)
             fails = self._book.phrases(now)
         if fails != self._told:
             self._told = fails
             self._publisher.publish('\n'.join(fails))
-        for linear, angular in commands:
-            body.command(linear, angular, now)
-        slow = self._book.value('wheel_slow', now)
-        body.left_share = 0.0 if self.has('motor_stuck') else 1.0 if slow is None else slow / 100.0
-        body.slip = math.radians(self._book.value('drift', now) or 0.0)
+        for act in received:
+            act(now)
+        self._book.weaken(body, now)
         for send in messages:
             send()
 
@@ -244,7 +242,7 @@ class Failing:
             self._person = None
 
     def close(self):
-        """Let the person go with the robot."""
+        """Remove the person."""
         with self._lock:
             if self._person is not None:
                 self._person.leave()

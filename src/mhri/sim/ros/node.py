@@ -2,13 +2,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The simulated robot on ROS: exactly the topics of its template, at the rates of the real one.
 
-Publishes odometry at 50 Hz, IMU at 100 Hz, laser scan at 10 Hz, ``/tf`` at 50 Hz and, where the
-template has one, the battery at 1 Hz; on request also the true pose at 50 Hz as a motion capture
-system would tell it (``/vrpn_client_node/<robot>/pose``, frame ``world``), and where its odometry
-begins as a perfect localisation would (``/tf``, ``map`` to ``<robot>/odom``). Where its sensors
-sit is on ``/tf_static``. Reads every velocity topic of the template, and what takes the power from
-its motors. Frames are ``<robot>/odom``,
-``<robot>/base_link``, ``<robot>/imu_link``, ``<robot>/laser`` (REP-105) and that of the camera.
+Publishes odometry at 50 Hz, IMU at 100 Hz, laser scan at 10 Hz, ``/tf`` at 50 Hz, the poses of its
+sensors on ``/tf_static`` (that of a camera on a head on ``/tf``) and, if the template has one, the
+battery at 1 Hz; optionally the true pose at 50 Hz like a motion capture system
+(``/vrpn_client_node/<robot>/pose``, frame ``world``), and the origin of its odometry like a perfect
+localisation (``/tf``, ``map`` to ``<robot>/odom``).
+Subscribes to every velocity topic of the template, and offers its switch of the motor power. Frames
+are ``<robot>/odom``, ``<robot>/base_link``, ``<robot>/imu_link``, ``<robot>/laser`` (REP-105) and
+that of the camera.
 """
 import math
 import threading
@@ -21,10 +22,10 @@ from sensor_msgs.msg import BatteryState, Imu, LaserScan
 from std_srvs.srv import SetBool, SetBoolResponse
 from tf2_msgs.msg import TFMessage
 
-from mhri.base.mocap import Pose
+from mhri.base.geometry import composed, inverse, Pose
 from mhri.base.names import topic_of
 from mhri.graph.ros.messages import message_class, MessageMissing, read_field
-from mhri.map.places import composed, inverse
+from mhri.robots.ros.convert import from_twist, turn_of
 from mhri.sim.lens import CAMERA_HEIGHT_M
 from mhri.sim.sensors import ImuSensor
 from mhri.sim.ticks import Due, Ticks
@@ -38,10 +39,10 @@ BATTERY_LIFE_S = 2.5 * 3600.0
 
 
 class PowerSwitch:
-    """The switch of its motor power: the topic or service that the template names.
+    """The switch of the motor power: the topic or service in the template.
 
     :param robot: its name
-    :param spec: :class:`mhri.base.robot_hardware.MotorPowerSpec`, None if there is none
+    :param spec: :class:`mhri.base.robot_hardware.MotorPowerSpec`, None without a switch
     :param set_power: called with True for on, False for off
     """
 
@@ -70,7 +71,7 @@ class PowerSwitch:
 
 
 def _transform(name, parent, child):
-    """Return the transform between two frames of a robot that lie in one place."""
+    """Return the identity transform between two frames of a robot."""
     transform = TransformStamped(child_frame_id='{}/{}'.format(name, child))
     transform.header.frame_id = '{}/{}'.format(name, parent)
     transform.transform.rotation.w = 1.0
@@ -78,7 +79,7 @@ def _transform(name, parent, child):
 
 
 class SimRobot:
-    """Publishes what a body and its sensors say, and passes commands to it.
+    """Publishes the data of a body and its sensors, and passes commands to it.
 
     :param name: the robot; also the prefix of its frames
     :param template: :class:`mhri.base.robot_types.RobotType`
@@ -86,14 +87,15 @@ class SimRobot:
     :param laser: :class:`mhri.sim.sensors.Laser`
     :param world: :class:`mhri.sim.world.World`
     :param landmarks: array (n, 3) of x, y, radius [m]
-    :param tracked: whether motion capture sees the robot
+    :param tracked: whether motion capture tracks the robot
     :param failing: :class:`mhri.sim.ros.fault_node.Failing`
-    :param placed: whether tf says where its odometry begins in the frame map
+    :param tools: :class:`mhri.sim.ros.tools_node.SimTools`
+    :param placed: whether to publish the origin of its odometry in the frame map on tf
     """
 
-    def __init__(self, name, template, body, imu, laser, world, landmarks, failing, tracked=False,
-                 placed=False):
-        self._name = name
+    def __init__(self, name, template, body, imu, laser, world, landmarks, failing, tools,
+                 tracked=False, placed=False):
+        self._name, self._tools = name, tools
         self._body = body
         self._failing = failing
         self._charge = 1.0
@@ -123,7 +125,7 @@ class SimRobot:
             rospy.Subscriber(prefix + topic, Twist, self._on_twist, queue_size=1, tcp_nodelay=True)
 
     def _make_messages(self, placed):
-        """Make the messages, with all that never changes."""
+        """Create the messages, with their constant fields."""
         name = self._name
         self._odom = Odometry(child_frame_id=name + '/base_link')
         self._odom.header.frame_id = name + '/odom'
@@ -147,23 +149,29 @@ class SimRobot:
         self._scan.header.frame_id = name + '/laser'
         self._tf = TFMessage([_transform(name, *frames) for frames in (
             ('odom', 'base_link'), ('base_link', 'imu_link'), ('base_link', 'laser'))])
-        # What never moves, for whoever reads that alone.
-        camera = _transform(name, 'base_link', 'camera_rgb_optical_frame')
+        # Static transforms, for nodes that only read those.
+        self._camera = camera = _transform(name, 'base_link', 'camera_rgb_optical_frame')
         camera.transform.translation.z = CAMERA_HEIGHT_M
-        turn = camera.transform.rotation
-        turn.x, turn.y, turn.z, turn.w = -0.5, 0.5, -0.5, 0.5
-        self._fixed = TFMessage([_transform(name, 'base_link', 'laser'), camera])
+        self._turn_camera()
+        self._fixed = TFMessage([_transform(name, 'base_link', 'laser')])
+        (self._tf if self._tools.turns else self._fixed).transforms.append(camera)
         self._origin = TransformStamped(child_frame_id=name + '/odom') if placed else None
         if placed:
             self._origin.header.frame_id = 'map'
             self._tf.transforms.append(self._origin)
 
+    def _turn_camera(self):
+        """Turn the camera as its head: level, looking ahead at 0."""
+        turn, half = self._camera.transform.rotation, 0.5 * self._tools.pan_rad
+        cos, sin = 0.5 * math.cos(half), 0.5 * math.sin(half)
+        turn.x, turn.y, turn.z, turn.w = -cos - sin, cos - sin, sin - cos, cos + sin
+
     def _on_twist(self, message):
-        if not self._failing.command(message.linear.x, message.angular.z):
+        if not self._failing.command(from_twist(message)):
             rospy.logwarn_throttle(1.0, 'refused a velocity that is not finite')
 
     def run(self):
-        """Live until shutdown, in steps of 10 ms; skip missed steps."""
+        """Run until shutdown, in steps of 10 ms; skip missed steps."""
         ticks, ending = Ticks(1.0 / RATE_HZ), threading.Event()
         rospy.on_shutdown(ending.set)
         try:
@@ -178,11 +186,12 @@ class SimRobot:
             self._world.leave()
 
     def _step(self, tick, now, took):
-        """Move, and publish what is due; no leap after a long pause of the process."""
+        """Move, and publish the due messages, without a jump after a long pause of the process."""
         body, dt = self._body, min(took, MAX_STEP_S)
         self._failing.step()
         body.step(dt, now)
         self._world.publish(body.x, body.y, body.yaw)
+        self._tools.step(tick, dt, body)
         self._charge = max(0.0, self._charge - dt * (
             1.0 / BATTERY_LIFE_S + self._failing.battery_per_s()))
         stamp = self._failing.stamp()
@@ -204,7 +213,7 @@ class SimRobot:
         message = self._imu_msg
         message.header.stamp = stamp
         turn = message.orientation
-        turn.z, turn.w = math.sin(0.5 * self._imu.yaw), math.cos(0.5 * self._imu.yaw)
+        turn.z, turn.w = turn_of(self._imu.yaw)
         rate, force = message.angular_velocity, message.linear_acceleration
         rate.x, rate.y, rate.z = gyro
         force.x, force.y, force.z = accel
@@ -212,13 +221,13 @@ class SimRobot:
 
     def _publish_odometry(self, stamp):
         body = self._body
-        z, w = math.sin(0.5 * body.odom_yaw), math.cos(0.5 * body.odom_yaw)
+        z, w = turn_of(body.odom_yaw)
         if self._odom_pub.get_num_connections():
             message = self._odom
             message.header.stamp = stamp
             place, turn = message.pose.pose.position, message.pose.pose.orientation
             place.x, place.y, turn.z, turn.w = body.odom_x, body.odom_y, z, w
-            message.twist.twist.linear.x = body.odom_v
+            message.twist.twist.linear.x, message.twist.twist.linear.y = body.odom_v, body.odom_u
             message.twist.twist.angular.z = body.odom_w
             self._failing.send(self._odom_pub, message, 'odometry')
         if self._tf_pub.get_num_connections():
@@ -229,16 +238,17 @@ class SimRobot:
             move.x, move.y, turn.z, turn.w = body.odom_x, body.odom_y, z, w
             if self._origin is not None:
                 self._place_odometry()
+            if self._tools.turns:
+                self._turn_camera()
             self._failing.send(self._tf_pub, self._tf, 'odometry')
 
     def _place_odometry(self):
-        """Say where its odometry begins, drift and all."""
+        """Publish the origin of its odometry, including drift."""
         body, transform = self._body, self._origin.transform
         origin = composed(Pose(body.x, body.y, body.yaw),
                           inverse(Pose(body.odom_x, body.odom_y, body.odom_yaw)))
         transform.translation.x, transform.translation.y = origin.x_m, origin.y_m
-        transform.rotation.z = math.sin(0.5 * origin.heading_rad)
-        transform.rotation.w = math.cos(0.5 * origin.heading_rad)
+        transform.rotation.z, transform.rotation.w = turn_of(origin.heading_rad)
 
     def _publish_scan(self, stamp):
         body = self._body
@@ -251,8 +261,8 @@ class SimRobot:
         body, message = self._body, PoseStamped()
         message.header.stamp, message.header.frame_id = stamp, 'world'
         message.pose.position.x, message.pose.position.y = body.x, body.y
-        message.pose.orientation.z = math.sin(0.5 * body.yaw)
-        message.pose.orientation.w = math.cos(0.5 * body.yaw)
+        turn = message.pose.orientation
+        turn.z, turn.w = turn_of(body.yaw)
         self._mocap_pub.publish(message)
 
     def _publish_battery(self, stamp):

@@ -4,26 +4,26 @@
 import math
 
 from python_qt_binding.QtCore import Qt
-from python_qt_binding.QtWidgets import (
-    QAbstractSpinBox, QComboBox, QDoubleSpinBox, QGridLayout, QLabel, QLineEdit, QPushButton,
-    QWidget)
+from python_qt_binding.QtWidgets import QComboBox, QGridLayout, QLabel, QWidget
 
 from mhri.base.gui import theme
+from mhri.base.gui.choices import IgnoresWheel
+from mhri.base.gui.controls import Button, Combo, LineField, NumberBox
 from mhri.base.task_views import typed_value
 
-LEFT_OUT, MISSING = 'left out', 'to be given'
-# The fields that take the name of a robot, or of a mark, and what is said of it.
+LEFT_OUT, MISSING = 'optional', 'required'
+# Fields for the name of a robot, or of a mark, with their hints.
 LEADER, MARK = 'leader', 'mark'
 _WHICH = {LEADER: 'which robot', MARK: 'which mark'}
-# How numbers of a unit are shown: unit on the screen, factor, decimals, step.
+# Display of a unit: unit on the screen, factor, decimals, step.
 _SHOWN = {'rad': ('\u00b0', 180.0 / math.pi, 0, 15.0), 's': (' s', 1.0, 0, 10.0),
           'm/s': (' m/s', 1.0, 2, 0.05), '': ('', 1.0, 0, 1.0)}
-# Nobody types more.
-_MOST_TEXT = 10000
+# Maximum length of typed text.
+_MAX_TEXT = 10000
 
 
-class NumberField(QDoubleSpinBox):
-    """A number with its unit, within its limits; the lowest step stands for "not given".
+class NumberField(IgnoresWheel, NumberBox):
+    """A number with its unit and limits; its lowest value means "not given".
 
     :param field: :class:`mhri.base.task_views.FieldView`
     """
@@ -47,29 +47,23 @@ class NumberField(QDoubleSpinBox):
         self.setValue(default * self._factor if isinstance(default, (int, float))
                       else self.minimum())
         self.setFocusPolicy(Qt.StrongFocus)
-        # Its own are too small for a finger.
-        self.setButtonSymbols(QAbstractSpinBox.NoButtons)
 
     def stepBy(self, steps):  # noqa: N802
-        """Begin at nothing, or where the limits allow it, not at the lowest there is."""
+        """Step from "not given" to zero, or to the nearest allowed value."""
         if self._has_none and self.value() == self.minimum() and steps > 0:
             self.setValue(min(self.maximum(), max(self.minimum() + self.singleStep(), 0.0)))
         else:
             super().stepBy(steps)
 
-    def wheelEvent(self, event):  # noqa: N802
-        """Leave the wheel to whatever scrolls."""
-        event.ignore()
-
     def given(self):
-        """Return the number in the unit of the task, None where it is not given."""
+        """Return the number in the unit of the task, None if it is not given."""
         self.interpretText()
         if self._has_none and self.value() == self.minimum():
             return None
         return round(self.value() / self._factor, 6)
 
 
-class TextField(QLineEdit):
+class TextField(LineField):
     """A text; one that begins with a bracket is a list, e.g. of places.
 
     :param field: :class:`mhri.base.task_views.FieldView`
@@ -79,19 +73,17 @@ class TextField(QLineEdit):
         super().__init__(parent)
         self.may_be_left_out = bool(field.default)
         default = field.default_value
-        self.setMaxLength(_MOST_TEXT)
+        self.setMaxLength(_MAX_TEXT)
         self.setText('' if default is None else str(default))
         self.setPlaceholderText(field.text)
-        margin = theme.touch_size(self) // 6
-        self.setTextMargins(margin, 0, margin, 0)
 
     def given(self):
-        """Return the text or list, None where there is none; raises ValueError of a broken list."""
+        """Return the text or list, None if it is empty; raises ValueError for a broken list."""
         return typed_value(self.text())
 
 
-class ChoiceField(QComboBox):
-    """One of a few words.
+class ChoiceField(IgnoresWheel, Combo):
+    """A choice among a few words.
 
     :param field: :class:`mhri.base.task_views.FieldView`
     """
@@ -103,17 +95,13 @@ class ChoiceField(QComboBox):
             self.addItem(choice or LEFT_OUT, choice)
         self.setCurrentIndex(max(0, self.findData(field.default_value)))
 
-    def wheelEvent(self, event):  # noqa: N802
-        """Leave the wheel to whatever scrolls."""
-        event.ignore()
-
     def given(self):
-        """Return the word, None where it is left out."""
+        """Return the word, None if it is not given."""
         return self.currentData() or None
 
 
-class NameField(QComboBox):
-    """The name of a robot or a mark: one of those there are, or typed.
+class NameField(IgnoresWheel, Combo):
+    """The name of a robot or a mark, chosen or typed.
 
     :param field: :class:`mhri.base.task_views.FieldView`
     """
@@ -123,23 +111,20 @@ class NameField(QComboBox):
         self.may_be_left_out = bool(field.default)
         self.setEditable(True)
         self.setInsertPolicy(QComboBox.NoInsert)
-        self.lineEdit().setMaxLength(_MOST_TEXT)
+        self.lineEdit().setMaxLength(_MAX_TEXT)
+        self.lineEdit().setTextMargins(*(theme.GRID, 0) * 2)
         self.lineEdit().setPlaceholderText(_WHICH[field.name])
 
     def show_names(self, names):
-        """Offer names; what was chosen or typed stays."""
+        """Set the offered names; the present choice stays."""
         if [self.itemText(place) for place in range(self.count())] != list(names):
             text = self.currentText()
             self.clear()
             self.addItems(names)
             self.setEditText(text)
 
-    def wheelEvent(self, event):  # noqa: N802
-        """Leave the wheel to whatever scrolls."""
-        event.ignore()
-
     def given(self):
-        """Return the name, None where there is none."""
+        """Return the name, None if it is empty."""
         return self.currentText().strip() or None
 
 
@@ -153,7 +138,7 @@ def _class_of(field):
 
 
 class TaskFields(QWidget):
-    """One line for each field of a task: its name, the field, and what it is."""
+    """One line per field of a task: its name, the widget, and its description."""
 
     def __init__(self, parent=None):
         super().__init__(parent)
@@ -165,14 +150,14 @@ class TaskFields(QWidget):
         self._build()
 
     def _build(self):
-        """Make the place of the fields."""
+        """Create the layout of the fields."""
         self._grid = QGridLayout(self)
         self._grid.setContentsMargins(0, 0, 0, 0)
 
     def show_kind(self, kind):
-        """Show the fields of a :class:`mhri.base.task_views.KindView`, None for none.
+        """Show the fields of a :class:`mhri.base.task_views.KindView`; None removes them.
 
-        What was entered for a task is there again when it is shown again.
+        The entries of a task are kept while another one is shown.
         """
         if kind == self._kind:
             return
@@ -200,9 +185,8 @@ class TaskFields(QWidget):
             widget.setAccessibleName('{} [{}]'.format(field.text, field.unit))
             widget.setToolTip(field.text)
             widget.setMinimumHeight(theme.touch_size(self))
-            name = QLabel(field.name.replace('_', ' '), inside)
-            name.setTextFormat(Qt.PlainText)
-            name.setToolTip(field.text)
+            name = QLabel(field.name.replace('_', ' '), inside, textFormat=Qt.PlainText,
+                          toolTip=field.text)
             name.setBuddy(widget)
             grid.addWidget(name, row, 0)
             grid.addWidget(widget, row, 1, 1, 1 if field.is_number else 3)
@@ -215,7 +199,7 @@ class TaskFields(QWidget):
 
     def _step_button(self, field, sign, step):
         """Make a button that makes a number larger or smaller."""
-        button, side = QPushButton(sign, self), theme.touch_size(self)
+        button, side = Button(sign, self), theme.touch_size(self)
         button.setFixedSize(side, side)
         button.setFocusPolicy(Qt.NoFocus)
         button.setAutoRepeat(True)
@@ -224,7 +208,7 @@ class TaskFields(QWidget):
         return button
 
     def show_names(self, robots, marks=()):
-        """Offer robots and marks where a field takes one."""
+        """Set the robots and marks offered by the fields."""
         self._names = {LEADER: tuple(robots), MARK: tuple(marks)}
         self._offer()
 
@@ -234,7 +218,7 @@ class TaskFields(QWidget):
                 field.show_names(self._names.get(name, ()))
 
     def given(self):
-        """Return ({name: value}, problem): what was entered, and in words what is wrong with it."""
+        """Return ({name: value}, problem as text) of the entries."""
         values = {}
         for row in self._kind.fields if self._kind else ():
             field = self._fields[row.name]
@@ -248,8 +232,20 @@ class TaskFields(QWidget):
                 values[row.name] = value
         return values, ''
 
+    def filled(self):
+        """Return {name: value} of the entries that are there and can be read."""
+        values = {}
+        for name, field in self._fields.items():
+            try:
+                value = field.given()
+            except ValueError:
+                continue
+            if value is not None:
+                values[name] = value
+        return values
+
     def let_go(self):
-        """Give the keyboard back, so that the keys drive."""
+        """Release the keyboard focus, so that the keys drive again."""
         focus = self.focusWidget()
         if focus is not None and focus.hasFocus():
             focus.clearFocus()

@@ -1,33 +1,33 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Drives in bags: where a robot was, by its odometry or by motion capture."""
+"""Reads drives from bags: the poses of a robot, by its odometry or by motion capture."""
 import os
 
 import rospkg
 
-from mhri.base.mocap import Pose
+from mhri.base.geometry import Pose
 from mhri.recording.folder import NotASession
 from mhri.recording.ros.bag_set import BagSet
 from mhri.robots.ros.convert import yaw_of
 from mhri.robots.ros.odometry import MOTIONS
-from mhri.tasks.replay import MOST_PLACES, thinned
+from mhri.tasks.replay import MAX_PLACES, thinned
 
 POSE = 'geometry_msgs/PoseStamped'
 READABLE = tuple(MOTIONS) + (POSE,)
-# So many messages are read at most: an hour at 50 Hz.
-MOST_MESSAGES = 200000
+# Maximum number of messages to read: an hour at 50 Hz.
+MAX_MESSAGES = 200000
 
 
 class DriveError(Exception):
-    """A drive that cannot be read; says why, and what would help."""
+    """An unreadable drive; the text names the reason and the remedy."""
 
 
 def read_drive(path, topics):
-    """Return the poses of a drive, the first one first (blocking: it reads the file).
+    """Return the poses of a drive in order (blocking: reads the file).
 
-    :param path: a bag; a relative one counts from ``$ROS_HOME``
-    :param topics: the first of them that is in the bag is read
-    :raises DriveError: there is none
+    :param path: path of a bag, relative to ``$ROS_HOME``
+    :param topics: candidate topics; the first one in the bag is read
+    :raises DriveError: there is no drive
     """
     path = os.path.join(rospkg.get_ros_home(), os.path.expanduser(path))
     try:
@@ -38,7 +38,7 @@ def read_drive(path, topics):
         return _read(bags, path, topics)
     except DriveError:
         raise
-    except Exception as error:  # whatever the bytes of a damaged file may lead rosbag to
+    except Exception as error:  # rosbag may raise anything for a damaged file
         raise DriveError('{}: cannot be read: {}'.format(
             path, getattr(error, 'strerror', None) or error))
     finally:
@@ -61,17 +61,17 @@ def _read(bags, path, topics):
         pose = read(recorded.message())
         if pose is not None:
             poses.append(pose)
-        if number >= MOST_MESSAGES:
+        if number >= MAX_MESSAGES:
             raise DriveError('{}: longer than {} messages: cut it with rosbag filter'.format(
-                path, MOST_MESSAGES))
+                path, MAX_MESSAGES))
     poses = thinned(poses)
-    if len(poses) > MOST_PLACES:
+    if len(poses) > MAX_PLACES:
         raise DriveError('{}: the drive is too long, cut it with rosbag filter'.format(path))
     return poses
 
 
 def _pose_of(kind):
-    """Return a function from a message of a type to its :class:`Pose`, None for none."""
+    """Return a function from a message of a type to its :class:`Pose`, or None."""
     if kind == POSE:
         def read(message):
             """Return the pose of a geometry_msgs/PoseStamped."""

@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The tasks that there are: mhri's own, and those that a lab's packages export.
+"""Loads the tasks: those of mhri, and those exported by a lab's packages.
 
-Such a task is somebody else's program. Where it cannot be imported or is no task, it is left out,
-and a sentence says why.
+Exported tasks are third-party code. One that cannot be imported, or is not a task, is left out with
+an error.
 """
 import importlib
 
@@ -13,9 +13,9 @@ from mhri.tasks.rows import with_exports
 
 
 def task_kinds(rospack=None):
-    """Load every task (blocking: it reads packages and imports their modules).
+    """Load every task (blocking: reads packages and imports their modules).
 
-    :param rospack: where to look for packages, default ``rospkg.RosPack()``
+    :param rospack: the packages to search, default ``rospkg.RosPack()``
     :returns: ({key: :class:`mhri.tasks.base.TaskKind`}, [ConfigError])
     """
     modules, broken = exported_tasks(rospack)
@@ -24,7 +24,7 @@ def task_kinds(rospack=None):
         origin = 'package {}: {}'.format(package, name)
         try:
             rows.append((origin, importlib.import_module(name).ROW))
-        except (Exception, SystemExit) as error:  # whatever a lab's module may raise
+        except (Exception, SystemExit) as error:  # a lab's module may raise anything
             unread.append(ConfigError(origin, 'ROW', (
                 'cannot be imported ({}: {}); has its package a setup.py and '
                 'catkin_python_setup(), and is its workspace built and sourced?').format(

@@ -1,18 +1,18 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Robots with a navigation of their own: goals to ``/<robot>/move_base``, and their end.
+"""Sends goals to robots with their own navigation, ``/<robot>/move_base``, and monitors them.
 
-Interfaces for each robot where somebody publishes ``/<robot>/move_base/status``:
+Interfaces for each robot with a publisher of ``/<robot>/move_base/status``:
 
 - publishes ``/<robot>/move_base/goal`` (``move_base_msgs/MoveBaseActionGoal``) and
   ``/<robot>/move_base/cancel`` (``actionlib_msgs/GoalID``)
 - subscribes ``/<robot>/move_base/status`` (``actionlib_msgs/GoalStatusArray``, 5 Hz)
 
 These are the topics of actionlib's protocol (http://wiki.ros.org/actionlib/DetailedDescription). A
-goal is sent only while the gates hear it, which cancel it if this process dies
-(:mod:`mhri.robots.ros.own_navigation`); where they are started anew meanwhile it ends, as other
-tasks do. One whose id begins as ours do and that nobody here wants is cancelled: its cancel was
-lost, or gates and mhri_tasks died together.
+goal is sent only while the mux is connected, which cancels it if this process dies
+(:mod:`mhri.robots.ros.own_navigation`); if the mux restarts meanwhile the goal ends, like other
+tasks. An unknown goal with an id of this program is cancelled: its cancel was lost, or mux and
+mhri_tasks died together.
 """
 import math
 import threading
@@ -22,16 +22,17 @@ from actionlib_msgs.msg import GoalID, GoalStatus, GoalStatusArray
 import rospy
 
 from mhri.graph.ros.master_api import MasterApi
-from mhri.graph.ros.prompt import PromptPublisher
+from mhri.graph.ros.non_blocking import NonBlockingPublisher
 from mhri.graph.ros.rospy_inside import unsubscribe
+from mhri.robots.ros.convert import turn_of
 from mhri.robots.ros.own_navigation import CANCEL, GOAL, MoveBaseActionGoal, PREFIX
 from mhri.tasks.base import BLOCKED, DONE, FAILED, LOST, RUNNING, TAKEN_OVER
 from mhri.tasks.delegated import Errand
 
 STATUS = '/{}/move_base/status'
-# Without a word for so long it is gone [s].
+# Maximum age of its status [s].
 SILENT_S = 2.0
-# A goal that is not listed so long after it was sent is lost [s].
+# A goal that is not listed within this time is lost [s].
 LISTED_S = 3.0
 _ALIVE = (GoalStatus.PENDING, GoalStatus.ACTIVE)
 _STATES = {
@@ -39,37 +40,37 @@ _STATES = {
     GoalStatus.ACTIVE: (RUNNING, 'its own navigation drives it'),
     GoalStatus.PREEMPTING: (RUNNING, 'its own navigation ends the goal'),
     GoalStatus.RECALLING: (RUNNING, 'its own navigation ends the goal'),
-    GoalStatus.SUCCEEDED: (DONE, 'it is there by its own navigation'),
+    GoalStatus.SUCCEEDED: (DONE, 'arrived by its own navigation'),
     GoalStatus.ABORTED: (BLOCKED, 'its own navigation found no way'),
     GoalStatus.REJECTED: (FAILED, 'its own navigation refused the goal'),
-    # By another goal, or by a cancel: the gates cancel when the operator stops or checks it.
-    GoalStatus.PREEMPTED: (TAKEN_OVER, 'its own navigation was told to do otherwise'),
-    GoalStatus.RECALLED: (TAKEN_OVER, 'its own navigation was told to do otherwise')}
+    # By another goal, or by a cancel: the mux cancels when the operator stops or selects it.
+    GoalStatus.PREEMPTED: (TAKEN_OVER, 'its own navigation got another goal, or a cancel'),
+    GoalStatus.RECALLED: (TAKEN_OVER, 'its own navigation got another goal, or a cancel')}
 
 
 class MoveBase(Errand):
     """One robot's navigation.
 
     :param odometry_frame: function that returns the name of the frame of its odometry
-    :param gates: function that returns the caller id of the gates in force, '' while unknown
+    :param mux: function that returns the caller id of the active mux, '' while unknown
     :param clock: seconds, monotonic
     """
 
-    def __init__(self, name, odometry_frame, gates, clock):
+    def __init__(self, name, odometry_frame, mux, clock):
         self._odometry_frame = odometry_frame
-        self._gates = gates
+        self._mux = mux
         self._clock = clock
         self._lock = threading.Lock()
         self._wanted = self._watched = None
         self._sent_at = self._heard_at = -math.inf
         self._status = {}
-        self._goal = PromptPublisher(GOAL.format(name), MoveBaseActionGoal)
-        self._cancel = PromptPublisher(CANCEL.format(name), GoalID, queue_size=10)
+        self._goal = NonBlockingPublisher(GOAL.format(name), MoveBaseActionGoal)
+        self._cancel = NonBlockingPublisher(CANCEL.format(name), GoalID, queue_size=10)
         self._subscriber = rospy.Subscriber(STATUS.format(name), GoalStatusArray, self._on_status,
                                             queue_size=1, tcp_nodelay=True)
 
     def close(self):
-        """Stop listening (blocking: it asks the master)."""
+        """Cancel the goal, and unregister all topics (blocking: calls the master)."""
         self.cancel()
         unsubscribe(self._subscriber)
         for publisher in (self._goal, self._cancel):
@@ -85,37 +86,37 @@ class MoveBase(Errand):
             self._cancel.publish(GoalID(id=goal))
 
     def is_ready(self):
-        """Tell whether it is heard and hears us, and the gates do."""
-        gates = self._gates()
-        others = any(link.endpoint_id != gates for link in self._goal.links())
+        """Return whether it is connected in both directions, and the mux is connected."""
+        mux = self._mux()
+        others = any(link.endpoint_id != mux for link in self._goal.links())
         return (self._clock() - self._heard_at < SILENT_S and others
                 and self._watch() is not None and bool(self._cancel.links()))
 
     def _watch(self):
-        """Return the newest connection to the gates in force, None without one."""
-        gates = self._gates()
-        return next((link for link in reversed(self._goal.links()) if link.endpoint_id == gates),
+        """Return the newest connection to the active mux, or None."""
+        mux = self._mux()
+        return next((link for link in reversed(self._goal.links()) if link.endpoint_id == mux),
                     None)
 
     def begin(self, by_odometry, in_frame):
-        """Send it to a pose; in the frame of its odometry, which each robot knows by itself."""
+        """Send it to a pose, in the frame of its odometry, which every robot has."""
         message = MoveBaseActionGoal()
-        # goal_id.stamp stays 0, so that the server sets it: its clock may be another one than ours,
-        # or simulated, and it refuses every goal that is older than the last one.
+        # goal_id.stamp stays 0, so that the server sets it: its clock may differ or be simulated,
+        # and it refuses goals that are older than the last one.
         message.header.stamp = rospy.Time.now()
         message.goal_id.id = PREFIX + uuid.uuid4().hex
         target = message.goal.target_pose
         target.header.stamp, target.header.frame_id = rospy.Time(0), self._odometry_frame()
         target.pose.position.x, target.pose.position.y = by_odometry.x_m, by_odometry.y_m
-        target.pose.orientation.z = math.sin(0.5 * by_odometry.heading_rad)
-        target.pose.orientation.w = math.cos(0.5 * by_odometry.heading_rad)
+        turn = target.pose.orientation
+        turn.z, turn.w = turn_of(by_odometry.heading_rad)
         with self._lock:
             self._wanted, self._sent_at = message.goal_id.id, self._clock()
             self._watched = self._watch()
         self._goal.publish(message)
 
     def look(self):
-        """Return (task state, sentence) of what was begun."""
+        """Return (task state, sentence) of the goal."""
         with self._lock:
             now = self._clock()
             status, text = self._status.get(self._wanted, (None, ''))
@@ -124,12 +125,12 @@ class MoveBase(Errand):
         if silent or unlisted or status == GoalStatus.LOST:
             return LOST, 'its own navigation (move_base) does not answer'
         if self._watch() is not self._watched:
-            return LOST, 'the drive service was started anew'
+            return LOST, 'the drive service was restarted'
         state, words = _STATES.get(status, _STATES[GoalStatus.PENDING])
         return state, '{} ({})'.format(words, text[:100]) if text and state != RUNNING else words
 
     def cancel(self):
-        """End what was begun."""
+        """Cancel the goal."""
         with self._lock:
             wanted, self._wanted = self._wanted, None
         if wanted is not None:
@@ -140,19 +141,19 @@ class MoveBases:
     """The :class:`MoveBase` of each robot that has one.
 
     :param odometry_frame: function from a robot's name to the frame of its odometry
-    :param gates: see :class:`MoveBase`
+    :param mux: see :class:`MoveBase`
     """
 
-    def __init__(self, odometry_frame, gates, clock):
+    def __init__(self, odometry_frame, mux, clock):
         self._odometry_frame = odometry_frame
-        self._gates = gates
+        self._mux = mux
         self._clock = clock
         self._robots = {}
 
-    def know(self, names):
-        """Look which of these robots have one, and forget the others (blocking).
+    def update(self, names):
+        """Update which of these robots have one, and drop the others (blocking).
 
-        :raises MasterError: the master cannot be asked now
+        :raises MasterError: the master is unavailable
         """
         if MoveBaseActionGoal is None:
             return
@@ -163,8 +164,8 @@ class MoveBases:
             self._robots.pop(name).close()
         for name in there - set(self._robots):
             self._robots[name] = MoveBase(
-                name, lambda robot=name: self._odometry_frame(robot), self._gates, self._clock)
+                name, lambda robot=name: self._odometry_frame(robot), self._mux, self._clock)
 
     def get(self, name):
-        """Return a robot's :class:`MoveBase`, None where it has none."""
+        """Return a robot's :class:`MoveBase`, or None."""
         return self._robots.get(name)

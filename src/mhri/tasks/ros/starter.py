@@ -1,10 +1,11 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Goals made into runs: whether a goal can be understood, and who can begin it."""
+"""Checks a goal and whether each robot can start it, and creates their runs."""
 from mhri.base.config import ConfigError
 from mhri.base.names import name_problem
 from mhri.graph.ros.master_api import MasterError
 from mhri.map.assignment import shared_out
+from mhri.tasks.acts import ACT
 from mhri.tasks.base import FAILED, LOST, MARK, Start, TEAM
 from mhri.tasks.delegated import DelegatedRun
 from mhri.tasks.goto import ROW as GOTO, target_of
@@ -13,25 +14,25 @@ from mhri.tasks.ros.drives import DriveError, read_drive
 from mhri.tasks.ros.move_base import MoveBases
 from mhri.tasks.run import RobotRun
 
-MOST_ROBOTS = 64
-# A robot that is known for so long and not placed will not be by itself [s].
+MAX_ROBOTS = 64
+# A robot has to be placed this long after it becomes known, else it is refused [s].
 PLACED_WITHIN_S = 2.0
 
 
 class Starter:
-    """Makes runs of goals.
+    """Creates the runs of goals.
 
     :param kinds: {key: TaskKind}
-    :param seen: :class:`mhri.tasks.ros.seen_robots.SeenRobots`
+    :param seen: :class:`mhri.tasks.ros.sensed_robots.SensedRobots`
     :param places: :class:`mhri.map.ros.place_keeper.PlaceKeeper`
-    :param gates: function that returns the caller id of the gates in force, '' while unknown
+    :param mux: function that returns the caller id of the active mux, '' while unknown
     """
 
-    def __init__(self, kinds, seen, places, gates, clock):
+    def __init__(self, kinds, seen, places, mux, clock):
         self._kinds = kinds
         self._seen = seen
         self._places = places
-        self._move_bases = MoveBases(self._odometry_frame, gates, clock)
+        self._move_bases = MoveBases(self._odometry_frame, mux, clock)
 
     def _odometry_frame(self, name):
         robot = self._seen.get(name)
@@ -40,16 +41,16 @@ class Starter:
     def values_of(self, goal):
         """Return the parameters of a ``mhri/RunTaskGoal``.
 
-        :raises ConfigError: something of it cannot be used
+        :raises ConfigError: it is invalid
         """
         kind = self._kinds.get(goal.task)
         if kind is None:
             raise ConfigError('task', '', 'no task {!r}; there are {}'.format(
                 goal.task[:60], ', '.join(self._kinds)))
         origin = 'task ' + goal.task
-        if not 0 < len(goal.robots) <= MOST_ROBOTS or len(set(goal.robots)) < len(goal.robots):
+        if not 0 < len(goal.robots) <= MAX_ROBOTS or len(set(goal.robots)) < len(goal.robots):
             raise ConfigError(origin, 'robots', 'expected 1 to {} robots, each once'.format(
-                MOST_ROBOTS))
+                MAX_ROBOTS))
         for name in goal.robots:
             problem = name_problem(name)
             if problem:
@@ -59,26 +60,26 @@ class Starter:
             raise ConfigError(origin, TEAM, 'has to name every robot that is started')
         return values
 
-    def know(self, names):
-        """See exactly these robots (blocking: it asks the master).
+    def sense_only(self, names):
+        """Sense exactly these robots (blocking: calls the master).
 
-        :raises MasterError: the master cannot be asked now
+        :raises MasterError: the master is unavailable
         """
-        # Goals that nobody wants any more first: robots drive to them.
-        self._move_bases.know(names)
-        self._seen.know(names)
+        # First cancel unknown goals, since robots are driving to them.
+        self._move_bases.update(names)
+        self._seen.sense_only(names)
 
     def prepare(self, key, values, team, names):
-        """Open what a goal needs (blocking: it asks the master and reads files).
+        """Open the inputs of a goal (blocking: calls the master and reads files).
 
-        Where one of its robots is not there, none is started: somebody has mistyped its name.
+        If one of its robots does not exist, none is started, since a name may be mistyped.
 
-        :param names: all robots that there are
-        :returns: ({robot: its recorded drive}, why it cannot be or '')
+        :param names: all robots
+        :returns: ({robot: its recorded drive}, the reason why it cannot be started or '')
         """
         unknown = [name for name in team if name not in names]
         try:
-            self.know(names)
+            self.sense_only(names)
             if unknown:
                 return {}, 'the drive service does not know {}: add it to the list of robots; ' \
                     'nobody was started'.format(', '.join(unknown))
@@ -96,9 +97,9 @@ class Starter:
         return read_drive(bag, [topic] if topic else robot.odometry_topics if robot else [])
 
     def in_order(self, goal):
-        """Return the robots of a goal, the first on the first place: so that no ways cross.
+        """Return the robots of a goal in the order of its slots, so that no paths cross.
 
-        :param goal: as for :meth:`run`; as they were given, where nobody knows who is where
+        :param goal: as for :meth:`run`; the order is unchanged if poses are unknown
         """
         names, slots = list(goal.team), self._kinds[goal.key].slots
         if slots is None or goal.values.team or len(names) < 2:
@@ -117,7 +118,7 @@ class Starter:
         return place.pose(robot.pose) if robot is not None and place.is_fresh else None
 
     def run(self, goal, name, drives, problem, now):
-        """Return the run of one robot; one that cannot be begun has ended.
+        """Return the run of one robot; it has ended already if it cannot be started.
 
         :param goal: has ``key``, ``values`` and ``order``, the team
         :param drives: see :meth:`prepare`, as is ``problem``
@@ -131,13 +132,14 @@ class Starter:
         problem = problem or self._not_placed(robot, placed)
         if not problem:
             start = Start(name, goal.order, robot.body, robot.trail.places(),
-                          robot.trail.ages_s(now), self._places.marks(), drives.get(name, ()))
+                          robot.trail.ages_s(now), self._places.marks(), drives.get(name, ()),
+                          robot.robot_type.accessories)
             try:
                 made = self._made(kind, values, start, timeout_s, now)
             except ValueError as error:
                 problem = str(error)
-            except Exception as error:  # a task may be a lab's own
-                problem = 'its task cannot be begun: {!r}'.format(error)[:200]
+            except Exception as error:  # a task may come from a lab's package
+                problem = 'its task cannot be started: {!r}'.format(error)[:200]
         run = made or RobotRun(name, None, robot.body if robot else None, timeout_s, now)
         run.placed = placed
         if problem:
@@ -145,7 +147,7 @@ class Starter:
         return run
 
     def _not_placed(self, robot, placed):
-        """Return why a robot that has to be placed is not, '' where it is or need not be."""
+        """Return why a robot that has to be placed is not, '' if it is, or need not be."""
         place = self._places.place(robot.name)
         if robot.known_s() <= PLACED_WITHIN_S or place.is_fresh:
             return ''
@@ -156,6 +158,8 @@ class Starter:
     def _made(self, kind, values, start, timeout_s, now):
         own = self._move_bases.get(start.robot) if kind is GOTO else None
         if own is not None:
+            if values.is_given(ACT):
+                raise ValueError('its own navigation (move_base) drives it: without act')
             return DelegatedRun(start.robot, target_of(values, start), own, start.body, timeout_s,
                                 now)
         return RobotRun(start.robot, kind.make(values, start), start.body, timeout_s, now)

@@ -1,21 +1,21 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The node of the tasks: robots on a task are given their velocities, 20 times a second.
+"""The node of the tasks: sends velocities to robots on a task, 20 times a second.
 
 Interfaces (global names; SI units):
 
 - serves the action ``/mhri_tasks/run`` (``mhri/RunTask``), any number of goals at a time, and
   ``/mhri_tasks/end`` (``mhri/EndTask``), which takes single robots out of their goals
 - publishes ``/mux_in/task`` (``mhri/TeamTwist``, 20 Hz while a robot is on a task, with zeros for
-  0.6 s after it) and ``/mhri_tasks/list`` (``mhri/TaskList``, latched, on change)
-- subscribes ``/gates/state`` (``mhri/GatesState``) and ``/robot_controller/stop_all``
-  (``std_msgs/Bool``), each from the node in force alone; of every robot that the gates know its
-  odometry and ``/vrpn_client_node/<robot>/pose``; of robots on a task laser, or depth
-  camera, and battery as well
-- knows where robots are placed: :mod:`mhri.map.ros.place_keeper`
+  0.6 s after it), ``/mux_in/accessory`` (``mhri/Accessory``, as tasks ask for) and
+  ``/mhri_tasks/list`` (``mhri/TaskList``, latched, on change)
+- subscribes ``/mux/state`` (``mhri/DriveState``), only from the mux in force; odometry and
+  ``/vrpn_client_node/<robot>/pose`` of every robot of the mux; laser or depth camera, and battery,
+  of robots on a task
+- keeps the places of robots: :mod:`mhri.map.ros.place_keeper`
 
-The action server has a lock of its own, held while it calls :meth:`Tasks._on_goal`: nothing of it
-is called while this object's lock is held.
+The action server has its own lock, held while it calls :meth:`Tasks._on_goal`: it is never called
+while this object's lock is held.
 """
 import math
 import threading
@@ -23,26 +23,26 @@ import time
 
 from geometry_msgs.msg import Twist
 import rospy
-from std_msgs.msg import Bool
 
 from mhri.base.config import ConfigError, short
 from mhri.base.limits import ZERO
-from mhri.graph.ros.in_force import InForce, STOP_SERVICE, TAKE_SERVICE
+from mhri.base.reasons import NO_LISTENER, Reason
 from mhri.graph.ros.master_api import MasterError
-from mhri.graph.ros.prompt import PromptPublisher
+from mhri.graph.ros.non_blocking import NonBlockingPublisher
+from mhri.graph.ros.service_owner import ServiceOwner, STOP_SERVICE
 from mhri.graph.ros.worker import Worker
 from mhri.map.ros.map_source import MapSource
 from mhri.map.ros.place_keeper import PlaceKeeper
 from mhri.map.ros.place_services import PlaceServices
 from mhri.msg import (
-    GatesState, RunTaskAction, RunTaskActionResult, RunTaskFeedback, RunTaskResult, TaskList,
-    TaskRun, TeamTwist)
+    Accessory, DriveState, RunTaskAction, RunTaskActionResult, RunTaskFeedback, RunTaskResult,
+    TaskList, TaskRun, TeamTwist)
 from mhri.robots.ros.convert import to_twist
 from mhri.robots.ros.tf_feed import TfFeed
 from mhri.srv import EndTask, EndTaskResponse
 from mhri.tasks.base import DONE, FAILED, LOST, STOPPED, TAKEN_OVER
 from mhri.tasks.ros.run_server import RunServer
-from mhri.tasks.ros.seen_robots import SeenRobots
+from mhri.tasks.ros.sensed_robots import SensedRobots
 from mhri.tasks.ros.starter import Starter
 from mhri.tasks.ros.words import kind_message, state_message
 from mhri.tasks.rows import BY_KEY
@@ -50,16 +50,16 @@ from mhri.tasks.run import ENDED, Facts
 
 TICK_S = 0.05
 FEEDBACK_EVERY = 4
-# Zeros for so long after a task has ended [s]: then its gate lets go of it.
+# Duration of zeros after a task [s]: by then the mux has released the robot.
 ZEROS_S = 0.6
-# The gates speak at 2 Hz: a word late by this much is a word that does not come [s].
+# The mux publishes at 2 Hz: its state is lost if it is later than this [s].
 SILENT_S = 0.9
-# So long the end waits for a status that is being published.
+# Time that the shutdown waits for a status being published [s].
 JOIN_S = 0.5
 
 
 class _Goal:
-    """A goal that was accepted: its handle, and the run of each of its robots."""
+    """An accepted goal: its handle, and the run of each of its robots."""
 
     def __init__(self, handle, goal, values):
         self.handle = handle
@@ -67,7 +67,7 @@ class _Goal:
         self.key = goal.task
         self.parameters = goal.parameters
         self.team = tuple(goal.robots)
-        # In whose order places are counted: see Starter.in_order.
+        # The robots in the order of the slots: see Starter.in_order.
         self.order = values.team or self.team
         self.values = values
         self.cancelled = False
@@ -75,7 +75,7 @@ class _Goal:
         self.ready = False
 
     def over(self):
-        """Tell whether every robot has ended."""
+        """Return whether every robot has ended."""
         return self.ready and all(run.phase == ENDED for run in self.runs)
 
     def message(self):
@@ -88,10 +88,10 @@ class Tasks:
     """The tasks of all robots.
 
     :param types: {name: RobotType}
-    :param kinds: {key: TaskKind} of the tasks that can be started
-    :param grid: of a map that is to be published; None: whatever map there is
-    :param keeps_to_map: no robot on a task leaves the free floor of that map
-    :param beat: called in every step: see :func:`mhri.graph.ros.stand_by.stand_by`
+    :param kinds: {key: TaskKind}
+    :param grid: grid of a map to publish; None: use the published map
+    :param keeps_to_map: whether robots on a task stay on the free floor of that map
+    :param beat: called in every step: :meth:`mhri.graph.ros.undertaker.Undertaker.beat`
     :param clock: seconds, monotonic
     """
 
@@ -104,48 +104,46 @@ class Tasks:
         self._wake = threading.Event()
         self._done = threading.Event()
         frames = TfFeed(clock)
-        self._seen = SeenRobots(types, clock, frames)
+        self._seen = SensedRobots(types, clock, frames)
         self._map = MapSource(grid)
         self._keeps_to_map = keeps_to_map
         self.places = PlaceKeeper(self._seen, self._map, clock, frames)
-        self._gates_force = InForce(TAKE_SERVICE)
-        self._mux_force = InForce(STOP_SERVICE)
-        self._starter = Starter(kinds, self._seen, self.places, lambda: self._gates_force.caller,
-                                clock)
+        self._force = ServiceOwner(STOP_SERVICE)
+        self._starter = Starter(kinds, self._seen, self.places, lambda: self._force.caller, clock)
         self._goals = {}
         # {robot: its newest RobotRun}: a robot has one task.
         self._runs = {}
-        self._gates = {}
+        # {robot: its newest mhri/RobotDrive}
+        self._drives = {}
         self._heard_at = None
-        self._gates_stop = self._mux_stop = False
+        self._stop_all = False
         self._operator = ''
-        self._told = None
+        self._reported = None
         self._worker = Worker('tasks_calls', self._between_calls)
         self._server = None
 
     def start(self):
-        """Listen, serve and begin to tick; returns at once."""
-        self._task = PromptPublisher('/mux_in/task', TeamTwist)
+        """Start the subscribers, services and threads."""
+        self._task = NonBlockingPublisher('/mux_in/task', TeamTwist)
+        self._accessory = rospy.Publisher('/mux_in/accessory', Accessory, queue_size=50,
+                                          tcp_nodelay=True)
         self._list = rospy.Publisher('/mhri_tasks/list', TaskList, queue_size=1, latch=True)
-        self._gates_force.subscribe('/gates/state', GatesState, self._on_gates, queue_size=10,
-                                    tcp_nodelay=True)
-        self._mux_force.subscribe('/robot_controller/stop_all', Bool, self._on_stop, queue_size=10,
-                                  tcp_nodelay=True)
+        self._force.subscribe('/mux/state', DriveState, self._on_state, queue_size=10,
+                              tcp_nodelay=True)
         self._map.start()
         self.places.start()
         PlaceServices(self._seen, self.places, self._map, self.is_busy, self._worker).start()
         rospy.Service('/mhri_tasks/end', EndTask, self._on_end)
-        self._gates_force.start()
-        self._mux_force.start()
+        self._force.start()
         self._worker.start()
         self._server = RunServer('/mhri_tasks/run', RunTaskAction, self._on_goal,
                                  self._on_cancel, auto_start=False)
         self._server.start()
-        # Whoever asked while this node was coming up may not be connected yet when a short task
-        # ends: its result waits for it.
+        # Latched: a client that sent a goal while this node was starting may not be connected yet
+        # when a short task ends.
         self._result = rospy.Publisher('/mhri_tasks/run/result', RunTaskActionResult,
                                        queue_size=50, latch=True)
-        self._tell(0)
+        self._report(0)
         threading.Thread(target=self._run, name='tasks', daemon=True).start()
         return self
 
@@ -159,14 +157,14 @@ class Tasks:
         self._finish()
         self._done.set()
         self._worker.stop()
-        # It would go on to publish on topics that are closed by then.
+        # Its timer would continue to publish on closed topics.
         timer = getattr(self._server, 'status_timer', None)
         if timer is not None:
             timer.shutdown()
             timer.join(JOIN_S)
 
     def is_busy(self, name):
-        """Tell whether a robot is on a task."""
+        """Return whether a robot is on a task."""
         with self._lock:
             return name in self._runs and self._runs[name].phase != ENDED
 
@@ -177,49 +175,43 @@ class Tasks:
                     if run.phase != ENDED}
 
     def _between_calls(self):
-        """Write what was drawn, and look at a new map (on the worker)."""
+        """Save drawn marks and fences, and process a new map (on the worker)."""
         self.places.keep()
         self._map.look()
 
-    def _on_gates(self, message):
+    def _on_state(self, message):
         with self._lock:
-            names = set(self._gates)
-            self._gates = {robot.name: robot for robot in message.robots}
+            names = set(self._drives)
+            self._drives = {robot.name: robot for robot in message.robots}
             self._heard_at = self._clock()
-            self._gates_stop = message.stop_all
+            self._stop_all = message.stop_all
             self._watch_operator(message.operator if message.leased else '')
-            if names != set(self._gates):
-                self._worker.do(self._know)
+            if names != set(self._drives):
+                self._worker.do(self._update_robots)
         self._wake.set()
 
     def _watch_operator(self, operator):
-        """End every task if the operator in control has gone or fallen silent.
+        """End every task if the operator in control has left or timed out.
 
-        Who began tasks with nobody in control, from a terminal, goes on without.
+        Tasks started without an operator in control, from a terminal, continue.
         """
         before, self._operator = self._operator, operator
         if before and operator != before:
             for run in self._runs.values():
-                run.end(LOST, 'nobody is in control any more: {} has gone or fallen silent'.format(
+                run.end(LOST, 'nobody is in control: {} has gone or has stopped sending'.format(
                     before) if not operator else '{} took control'.format(operator), self._clock())
 
-    def _on_stop(self, message):
-        with self._lock:
-            self._mux_stop = message.data
-        if message.data:
-            self._wake.set()
-
-    def _know(self):
-        """See the robots that the gates know; tried again where the master does not answer."""
+    def _update_robots(self):
+        """Sense the robots of the mux; retried while the master does not respond."""
         try:
-            self._starter.know(list(self._gates))
+            self._starter.sense_only(list(self._drives))
         except (MasterError, OSError) as error:
-            rospy.logwarn_throttle(5.0, 'the robots cannot be looked at: {}'.format(error))
+            rospy.logwarn_throttle(5.0, 'cannot query the robots: {}'.format(error))
             if not self._done.wait(1.0):
-                self._worker.do(self._know)
+                self._worker.do(self._update_robots)
 
     def _on_goal(self, handle):
-        """Accept a goal that can be understood, and begin it on the worker."""
+        """Accept a valid goal, and start it on the worker."""
         goal = handle.get_goal()
         try:
             values = self._starter.values_of(goal)
@@ -242,7 +234,7 @@ class Tasks:
         self._wake.set()
 
     def _on_end(self, request):
-        """End what robots are busy with; the others on the same goals go on."""
+        """End the tasks of robots; other robots on the same goals continue."""
         with self._lock:
             busy = [name for name in dict.fromkeys(request.robots) if self.is_busy(name)]
             for name in busy:
@@ -252,14 +244,14 @@ class Tasks:
                                else 'none of these robots is on a task')
 
     def _begin(self, goal):
-        """Open what the robots of a goal need, and begin their runs (on the worker)."""
+        """Open the inputs of a goal, and start the runs of its robots (on the worker)."""
         try:
             self._map.look()
             drives, problem = self._starter.prepare(goal.key, goal.values, goal.team,
-                                                    list(self._gates))
+                                                    list(self._drives))
             goal.team = tuple(self._starter.in_order(goal))
-        except Exception as error:  # a task may be a lab's own, a bag anybody's
-            drives, problem = {}, 'its task cannot be begun: {!r}'.format(error)[:200]
+        except Exception as error:  # a task may come from a lab's package, a bag from anywhere
+            drives, problem = {}, 'its task cannot be started: {!r}'.format(error)[:200]
         goal.order = goal.values.team or goal.team
         with self._lock:
             now = self._clock()
@@ -278,7 +270,7 @@ class Tasks:
         number = 0
         due = self._clock()
         while not (self._done.is_set() or rospy.is_shutdown()):
-            # Never further off than a step, however often it was woken before its time.
+            # The next step is at most one period away, even after many early wake-ups.
             now = self._clock()
             due = min(max(due + TICK_S, now), now + TICK_S)
             self._wake.wait(due - now)
@@ -287,7 +279,7 @@ class Tasks:
             self._beat()
             try:
                 self._tick(number)
-            except Exception as error:  # without this thread no task would ever end
+            except Exception as error:  # this thread must not end: it stops tasks
                 rospy.logerr_throttle(1.0, 'the tasks failed: {!r}'.format(error))
                 with self._lock:
                     for run in self._runs.values():
@@ -300,10 +292,10 @@ class Tasks:
         with self._lock:
             self._publish(self._clock())
         self._finish()
-        self._tell(number)
+        self._report(number)
 
     def _publish(self, now):
-        """Publish what every robot on a task shall do; called with the lock held."""
+        """Publish the velocities of all robots on a task; called with the lock held."""
         busy = {name for name, run in self._runs.items() if run.phase != ENDED}
         message = TeamTwist()
         for name, run in self._runs.items():
@@ -313,19 +305,33 @@ class Tasks:
                     message.twists.append(Twist())
                 continue
             velocity = self._ticked(run, now, busy)
+            self._act(run)
             if not run.drives:
                 continue
             message.robots.append(name)
-            message.twists.append(to_twist(velocity.linear_mps, velocity.angular_rad_s))
+            message.twists.append(to_twist(*velocity))
         if message.robots:
             message.header.stamp = rospy.Time.now()
             self._task.publish(message)
 
+    def _act(self, run):
+        """Use the accessories that a task asks for; the drive refuses what may not be now."""
+        acts, run.acts = run.acts, []
+        drive = self._drives.get(run.robot)
+        states = {state.key: state for state in drive.accessories} if drive else {}
+        for key, choice in acts:
+            state = states.get(key)
+            problem = 'the drive service knows none' if state is None else \
+                Reason(NO_LISTENER).sentence if state.stands == NO_LISTENER else ''
+            run.said.append(' '.join(filter(None, (key, choice))) + (': ' + problem if problem
+                                                                     else ''))
+            self._accessory.publish(robots=[run.robot], key=key, choice=choice)
+
     def _ticked(self, run, now, busy):
-        """Return what a robot shall do; a task that fails ends its own run alone."""
+        """Return the velocity of a robot; an error in a task only ends its own run."""
         try:
             return run.tick(self._facts(run, now, busy))
-        except Exception as error:  # a task may be a lab's own
+        except Exception as error:  # a task may come from a lab's package
             rospy.logerr('%s: its task failed: %r', run.robot, error)
             run.end(FAILED, 'its task failed: {!r}'.format(error)[:200], now)
             return ZERO
@@ -333,11 +339,11 @@ class Tasks:
     def _facts(self, run, now, busy):
         """Return the :class:`Facts` of a robot."""
         name = run.robot
-        gate, robot = self._gates.get(name), self._seen.get(name)
-        known = dict(stop_all=self._mux_stop or self._gates_stop, known=gate is not None,
+        drive, robot = self._drives.get(name), self._seen.get(name)
+        known = dict(stop_all=self._stop_all, known=drive is not None,
                      answers=self._heard_at is not None and now - self._heard_at <= SILENT_S)
-        if gate is not None:
-            known.update(obeys=gate.obeys, stands=gate.stands)
+        if drive is not None:
+            known.update(obeys=drive.obeys, stands=drive.stands)
         if robot is not None:
             known.update(robot.ages(), has_laser=robot.has_eye, looks=robot.looks(),
                          unplaced=robot.has_unplaced(),
@@ -352,7 +358,7 @@ class Tasks:
         return Facts(now, **known)
 
     def _finish(self):
-        """Tell the results of the goals that are over; called without the lock."""
+        """Publish the results of ended goals; called without the lock."""
         with self._lock:
             over = [goal for goal in self._goals.values() if goal.over()]
             for goal in over:
@@ -368,7 +374,7 @@ class Tasks:
             else:
                 goal.handle.set_aborted(result, words)
 
-    def _tell(self, number):
+    def _report(self, number):
         """Publish feedback five times a second, and the list on change."""
         if number % FEEDBACK_EVERY:
             return
@@ -377,10 +383,10 @@ class Tasks:
             runs = [goal.message() for goal in goals]
         for goal, run in zip(goals, runs):
             goal.handle.publish_feedback(RunTaskFeedback(robots=run.robots))
-        told = [(run.id, [(robot.robot, robot.state) for robot in run.robots]) for run in runs]
+        reported = [(run.id, [(robot.robot, robot.state) for robot in run.robots]) for run in runs]
         marks = sorted(self.places.marks())
-        if (told, marks) != self._told:
-            self._told = told, marks
+        if (reported, marks) != self._reported:
+            self._reported = reported, marks
             message = TaskList(tasks=[kind_message(kind) for kind in self._kinds.values()],
                                runs=runs, marks=marks)
             message.header.stamp = rospy.Time.now()

@@ -1,12 +1,12 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The screen's side of the tasks: goals to ``mhri_tasks``, and what it says of every task.
+"""The screen's client of ``mhri_tasks``: sends goals, and follows all tasks.
 
-Speaks the protocol of the action ``/mhri_tasks/run`` (``mhri/RunTask``) itself: actionlib's client
-tells of its own goals alone, and the screen shows everybody's, those of a screen before it, too.
+It implements the protocol of the action ``/mhri_tasks/run`` (``mhri/RunTask``) itself: actionlib's
+client only reports its own goals, but the screen shows all, including those of an earlier screen.
 Publishes ``/mhri_tasks/run/goal`` and ``/mhri_tasks/run/cancel``; calls ``/mhri_tasks/end``.
 Subscribes ``/mhri_tasks/list``, ``/mhri_tasks/run/feedback`` and ``/mhri_tasks/run/result``, and
-believes only the ``mhri_tasks`` in force (:mod:`mhri.graph.ros.in_force`), by a service that
+accepts only the ``mhri_tasks`` in force (:mod:`mhri.graph.ros.service_owner`), by a service that
 every node of rospy has.
 """
 from dataclasses import replace
@@ -21,24 +21,24 @@ import rospy
 from mhri.base.task_views import FieldView, KindView, Progress, RunView
 from mhri.base.task_words import NOT_ANSWERING, NOT_RUNNING
 from mhri.base.text import tidy_text
-from mhri.graph.ros.in_force import Strangers
 from mhri.graph.ros.node_client import NodeClient
 from mhri.graph.ros.rospy_inside import publishers
+from mhri.graph.ros.service_owner import RejectedSenders
 from mhri.msg import (
     RunTaskActionFeedback, RunTaskActionGoal, RunTaskActionResult, RunTaskGoal, TaskList)
 from mhri.srv import EndTask
 from mhri.tasks.task_book import TaskBook
 
 SERVICE = '/mhri_tasks/get_loggers'
-# Feedback comes at 5 Hz while anything is under way; the first one takes a moment [s].
+# Feedback arrives at 5 Hz while a task runs; the first one takes a moment [s].
 SILENT_S = 3.0
-# A call waits so long for its service [s].
+# Time that a call waits for its service [s].
 CALL_S = 1.0
 _END = '/mhri_tasks/end'
 
 
 class TasksClient:
-    """What the screen knows of the tasks; every method returns at once.
+    """The state of the tasks for the screen; no method blocks.
 
     :param clock: function that returns seconds, monotonic
     ``strangers`` are nodes that pose as ``mhri_tasks``.
@@ -52,59 +52,59 @@ class TasksClient:
         self._there = False
         self._numbers = itertools.count(1)
         self._list = None
-        self.strangers = Strangers(clock)
+        self.strangers = RejectedSenders(clock)
         self._node = NodeClient('tasks_client', SERVICE, CALL_S, self.strangers.refuse,
                                 self._on_new)
 
     def start(self):
-        """Begin to listen, on a worker; call it after ``rospy.init_node``."""
+        """Subscribe, on a worker; to be called after ``rospy.init_node``."""
         self._node.do(self._connect)
         return self
 
     def _connect(self):
-        """Open every topic (on the worker: it asks the master)."""
+        """Open every topic (on the worker: calls the master)."""
         self._goal = self._node.advertise('/mhri_tasks/run/goal', RunTaskActionGoal, 20)
         self._cancel = self._node.advertise('/mhri_tasks/run/cancel', GoalID, 20)
-        heard = self._node.subscribe('/mhri_tasks/list', TaskList, self._hear_list, 50)
+        heard = self._node.subscribe('/mhri_tasks/list', TaskList, self._on_list, 50)
         self._node.subscribe('/mhri_tasks/run/feedback', RunTaskActionFeedback,
-                             self._hear_feedback, 50)
-        self._node.subscribe('/mhri_tasks/run/result', RunTaskActionResult, self._hear_result, 50)
+                             self._on_feedback, 50)
+        self._node.subscribe('/mhri_tasks/run/result', RunTaskActionResult, self._on_result, 50)
         self._node.start()
         self._list = heard
 
     def _on_new(self, _):
-        """Take in that another process runs the tasks now: what the last one ran is over."""
+        """Handle a new process of the task service: the runs of the last one are over."""
         with self._lock:
             self._book.lose('the task service was restarted')
 
-    def _hear_list(self, message):
+    def _on_list(self, message):
         with self._lock:
             self._heard_at = self._clock()
-            self._book.hear_list(tuple(map(_kind, message.tasks)), tuple(
+            self._book.on_list(tuple(map(_kind, message.tasks)), tuple(
                 RunView(run.id, run.task, run.parameters, _progress(run.robots))
                 for run in message.runs), self._heard_at, tuple(map(tidy_text, message.marks)))
 
-    def _hear_feedback(self, message):
+    def _on_feedback(self, message):
         with self._lock:
             self._heard_at = self._clock()
-            self._book.hear_feedback(message.status.goal_id.id,
-                                     _progress(message.feedback.robots))
+            self._book.on_feedback(message.status.goal_id.id,
+                                   _progress(message.feedback.robots))
 
-    def _hear_result(self, message):
+    def _on_result(self, message):
         with self._lock:
             self._heard_at = self._clock()
-            self._book.hear_result(
+            self._book.on_result(
                 message.status.goal_id.id, tidy_text(message.status.text),
                 _progress(message.result.robots),
                 message.status.status in (GoalStatus.PREEMPTED, GoalStatus.RECALLED))
 
     def forget(self):
-        """Begin anew: what was heard before counts no more."""
+        """Discard everything received so far."""
         with self._lock:
             self._book = TaskBook()
 
     def view(self):
-        """Return the :class:`mhri.base.task_views.TasksView` of this moment."""
+        """Return the current :class:`mhri.base.task_views.TasksView`."""
         now = self._clock()
         there = self._list is not None and self._node.caller in publishers(self._list)
         with self._lock:
@@ -118,22 +118,22 @@ class TasksClient:
                        NOT_ANSWERING if silent else '')
 
     def take_news(self):
-        """Return the :class:`mhri.tasks.task_book.News` since the last call."""
+        """Return the :class:`mhri.base.views.Change` values since the last call."""
         with self._lock:
             return self._book.take_news()
 
     def of(self, robot):
-        """Return the :class:`mhri.base.task_views.TaskView` of a robot, None for none."""
+        """Return the :class:`mhri.base.task_views.TaskView` of a robot, None without a task."""
         with self._lock:
             return self._book.of(robot)
 
     def left(self, robot):
-        """Return the :class:`mhri.tasks.task_book.Goal` that a robot could continue."""
+        """Return the :class:`mhri.tasks.task_book.Goal` that a robot could continue, or None."""
         with self._lock:
             return self._book.left(robot)
 
     def send(self, goal):
-        """Ask for a task; what becomes of it is news.
+        """Request a task; its progress is reported as news.
 
         :param goal: :class:`mhri.tasks.task_book.Goal`
         """
@@ -149,9 +149,9 @@ class TasksClient:
         self._goal.publish(message)
 
     def cancel(self, robots):
-        """End the tasks of robots; the others on the same goals go on.
+        """End the tasks of robots; other robots on the same goals continue.
 
-        :returns: whether there was any
+        :returns: whether there were any
         """
         with self._lock:
             parts = self._book.parts_of(tuple(robots))
@@ -166,13 +166,13 @@ class TasksClient:
         return bool(parts)
 
     def _ended(self, robots, answer):
-        """Take in whether robots are out of their goals."""
+        """Record whether robots were taken out of their goals."""
         if answer is None:
             with self._lock:
                 self._book.keep_on(robots, 'the task service does not answer')
 
     def close(self, forget=False):
-        """End; returns at once.
+        """Close without blocking.
 
         :param forget: unregister every topic as well, in the background
         """

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Tasks in messages: what can be started, and how each robot is getting on."""
+"""Messages of tasks: available kinds, and the progress of each robot."""
 import math
 
 import yaml

@@ -2,29 +2,23 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Sound in blocks of 20 ms: from a microphone, a WAV file, or a raw stream.
 
-All of it has the form of :mod:`mhri.voice.sound`; a microphone that has another rate is
-resampled by PortAudio's ALSA plug, a WAV file has to be converted
-(``sox in.wav -r 16000 -c 1 -b 16 out.wav``).
+All sources have the form of :mod:`mhri.voice.sound`; a microphone with another rate is resampled by
+PortAudio's ALSA plug, a WAV file has to be converted (``sox in.wav -r 16000 -c 1 -b 16 out.wav``).
 """
-import fcntl
 import json
 import os
 import select
 import stat
-import subprocess
 import time
 import wave
 
-from mhri.devices.io import child
+from mhri.devices.io.child import Child
 from mhri.devices.io.reader import DeviceAbsent, DeviceLost
 from mhri.voice.sound import BLOCK_BYTES, BLOCK_S, RATE_HZ
 
-# A microphone that gives nothing for this long is gone; ALSA does not always say so.
+# A microphone that is silent for this long is gone, which ALSA does not always report [s].
 _SILENT_S = 2.0
 _OPEN_S = 10.0
-# What is said while an utterance is recognised waits here: 4 s of sound.
-_PIPE_BYTES = 1 << 17
-_SET_PIPE_SIZE = 1031  # F_SETPIPE_SZ of Linux; Python has it from 3.10 on
 
 
 class Microphone:
@@ -35,92 +29,65 @@ class Microphone:
 
     def __init__(self, wanted=''):
         self._wanted = wanted
-        self._process = None
-        self._held = b''
+        self._child = None
         self._last = 0.0
 
     def open(self):
-        """Open it; return its name.
+        """Open the microphone; return its name.
 
-        :raises DeviceAbsent: there is none, or it cannot be opened
+        :raises DeviceAbsent: no microphone is connected, or it cannot be opened
         """
-        self._held = b''
         try:
-            self._process = subprocess.Popen(
-                child.command('mhri.voice.io.microphone', self._wanted),
-                stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+            self._child = Child('mhri.voice.io.microphone', self._wanted)
         except OSError as error:
             raise DeviceAbsent('the driver of the microphone cannot be started: {}'.format(error))
-        fcntl.fcntl(self._process.stdout, _SET_PIPE_SIZE, _PIPE_BYTES)
-        deadline = time.monotonic() + _OPEN_S
         try:
-            while b'\n' not in self._held:
-                left_s = deadline - time.monotonic()
-                if left_s <= 0.0:
-                    raise DeviceAbsent('the driver of the microphone does not answer')
-                self._take(left_s)
-        except DeviceLost:
+            answer = self._child.packet(_OPEN_S)
+        except EOFError:
             self.close()
             raise DeviceAbsent('the driver of the microphone failed')
-        except DeviceAbsent:
+        if not answer:
             self.close()
-            raise
-        line, self._held = self._held.split(b'\n', 1)
-        answer = json.loads(line.decode())
+            raise DeviceAbsent('the driver of the microphone does not answer')
+        answer = json.loads(answer.decode())
         if 'absent' in answer:
             self.close()
             raise DeviceAbsent(answer['absent'])
         self._last = time.monotonic()
         return answer['device']
 
-    def _take(self, timeout_s):
-        """Read what comes within a time.
-
-        :raises DeviceLost: nothing more will come
-        """
-        stream = self._process.stdout
-        if not select.select([stream], [], [], timeout_s)[0]:
-            return
-        data = os.read(stream.fileno(), BLOCK_BYTES)
-        if not data:
-            raise DeviceLost('the microphone is gone: was it pulled out?')
-        self._held += data
-        self._last = time.monotonic()
-
     def read(self, timeout_s):
-        """Return the next block, or b'' if too little came in time.
+        """Return the next block, or b'' if none was received in time.
 
-        :raises DeviceLost: it was pulled out
+        :raises DeviceLost: the microphone is gone
         """
-        if len(self._held) < BLOCK_BYTES:
-            self._take(timeout_s)
-            if time.monotonic() - self._last > _SILENT_S:
-                raise DeviceLost('the microphone gives no sound any longer: was it pulled out?')
-        if len(self._held) < BLOCK_BYTES:
-            return b''
-        block, self._held = self._held[:BLOCK_BYTES], self._held[BLOCK_BYTES:]
+        try:
+            block = self._child.packet(timeout_s)
+        except EOFError:
+            raise DeviceLost('the microphone is gone: was it pulled out?')
+        if block:
+            self._last = time.monotonic()
+        elif time.monotonic() - self._last > _SILENT_S:
+            raise DeviceLost('the microphone gives no sound any longer: was it pulled out?')
         return block
 
     def waits(self):
-        """Tell whether more of it waits to be read."""
-        return len(self._held) >= BLOCK_BYTES or bool(
-            select.select([self._process.stdout], [], [], 0.0)[0])
+        """Return whether more sound is waiting to be read."""
+        return bool(select.select([self._child], [], [], 0.0)[0])
 
     def close(self):
-        """Give it back; does nothing if it is not open."""
-        process, self._process = self._process, None
-        if process is not None:
-            process.kill()
-            process.wait()
-            process.stdout.close()
+        """Release it; does nothing if it is not open."""
+        child, self._child = self._child, None
+        if child is not None:
+            child.end()
 
 
 class WavFile:
-    """A recording, played once at the pace it was spoken at; silence follows.
+    """A recording, played once in real time, followed by silence.
 
-    Its end does not count as a lost device: found again, it would drive the robots again.
+    Its end does not count as a lost device: reopened, it would drive the robots again.
 
-    :param paced: False: as fast as it is read
+    :param paced: False: without pacing
     """
 
     def __init__(self, path, paced=True):
@@ -130,9 +97,9 @@ class WavFile:
         self._due = 0.0
 
     def open(self):
-        """Open it; return its name.
+        """Open the file; return its name.
 
-        :raises DeviceAbsent: it cannot be read, or has another form
+        :raises DeviceAbsent: the file cannot be read, or has another form
         """
         try:
             self._file = wave.open(self._path, 'rb')
@@ -146,9 +113,9 @@ class WavFile:
         return 'the recording ' + self._path
 
     def read(self, timeout_s):
-        """Return the next block, or b'' if it is not time for it."""
+        """Return the next block, or b'' if it is not due within the time."""
         now = time.monotonic()
-        # The first block is due when it is asked for: loading the recogniser takes a while.
+        # The first block is due at the first call: loading the recogniser takes a while.
         self._due = self._due or now
         wait_s = self._due - now
         if self._paced:
@@ -159,7 +126,7 @@ class WavFile:
         return self._file.readframes(BLOCK_BYTES // 2).ljust(BLOCK_BYTES, b'\0')
 
     def waits(self):
-        """Tell whether the next block should have been read already."""
+        """Return whether the next block should have been read already."""
         return time.monotonic() > self._due
 
     def close(self):
@@ -173,7 +140,7 @@ class WavFile:
 class RawStream:
     """Raw sound from a FIFO, a character device, or the standard input ('-').
 
-    It exists while somebody writes to it, and is lost when the last writer closes it.
+    It exists while a program writes to it, and is lost when the last writer closes it.
     """
 
     def __init__(self, path):
@@ -183,9 +150,9 @@ class RawStream:
         self._held = b''
 
     def open(self):
-        """Open it; return its name.
+        """Open the stream; return its name.
 
-        :raises DeviceAbsent: it is not there, or nobody writes to it
+        :raises DeviceAbsent: the path does not exist, or no program writes to it
         """
         self._held = b''
         try:
@@ -193,9 +160,9 @@ class RawStream:
                 self._path, os.O_RDONLY | os.O_NONBLOCK)
             kind = os.fstat(self._fd).st_mode
             if not (stat.S_ISFIFO(kind) or stat.S_ISCHR(kind) or stat.S_ISSOCK(kind)):
-                raise DeviceAbsent('{} is no stream: make one with mkfifo, or name a .wav '
+                raise DeviceAbsent('{} is not a stream: make one with mkfifo, or name a .wav '
                                    'file'.format(self._path))
-            # A FIFO that never had a writer does not count as ready, but has ended all the same.
+            # A FIFO that never had a writer is not reported as ready, but is at its end, too.
             if self._path != '-' or self._ready(0.0):
                 self._take()
         except OSError as error:
@@ -214,9 +181,9 @@ class RawStream:
         return bool(select.select([self._fd], [], [], timeout_s)[0])
 
     def _take(self):
-        """Read what is available, at most up to the end of a block.
+        """Read the available bytes, at most up to the end of a block.
 
-        :raises DeviceLost: it has ended
+        :raises DeviceLost: the stream has ended
         """
         try:
             data = os.read(self._fd, BLOCK_BYTES - len(self._held))
@@ -227,9 +194,9 @@ class RawStream:
         self._held += data
 
     def read(self, timeout_s):
-        """Return the next block, or b'' if too little came in time.
+        """Return the next block, or b'' if it was not complete in time.
 
-        :raises DeviceLost: it has ended, or cannot be read
+        :raises DeviceLost: the stream has ended, or cannot be read
         """
         if len(self._held) < BLOCK_BYTES:
             if not self._ready(timeout_s):
@@ -244,7 +211,7 @@ class RawStream:
         return block
 
     def waits(self):
-        """Tell whether more of it waits to be read."""
+        """Return whether more sound is waiting to be read."""
         return self._ready(0.0)
 
     def close(self):
@@ -255,7 +222,7 @@ class RawStream:
 
 
 def open_source(text):
-    """Return the source that a text describes, not open yet.
+    """Return the source for a text, not open yet.
 
     '' or ``microphone`` is the default microphone, ``microphone:<part of its name>`` another,
     ``-`` the standard input, ``<path>.wav`` a recording, any other path a raw stream.

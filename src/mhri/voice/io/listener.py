@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Turns a stream of sound into what was heard: stops at once, commands when they have ended."""
+"""Converts a stream of sound to events: stops at once, commands after their end."""
 from dataclasses import dataclass
 import time
 from typing import Optional
@@ -12,14 +12,14 @@ from mhri.voice.sound import BLOCK_S
 
 @dataclass(frozen=True)
 class Began:
-    """Somebody began to speak; ``at_s`` is the time of the stream [s], as below."""
+    """Speech has begun; ``at_s`` is the time in the stream [s], also below."""
 
     at_s: float
 
 
 @dataclass(frozen=True)
 class Spotted:
-    """A stop, or a wake word, was heard while it was spoken."""
+    """A stop or a wake word was detected within an utterance."""
 
     at_s: float
     word: str
@@ -27,9 +27,9 @@ class Spotted:
 
 @dataclass(frozen=True)
 class Ended:
-    """An utterance has ended; ``hypothesis`` is None if it fits no command.
+    """An utterance has ended; ``hypothesis`` is None if it matches no command.
 
-    ``computed_s`` is what the processor took to recognise it [s]: no waiting for anything.
+    ``computed_s`` is the processor time of its recognition [s], without waiting.
     """
 
     began_s: float
@@ -38,20 +38,20 @@ class Ended:
     computed_s: float = 0.0
 
 
-# A short utterance is looked at after so much silence already: noise may have hidden a stop from
-# the spotter, and a stop does not wait for the end of a pause.
+# A short utterance is checked after this much silence already: noise may have hidden a stop from
+# the spotter, and a stop must not wait for the end of a pause.
 _EARLY_S = 0.16
 _SHORT_S = 2.2
 _NOT_LOOKED = object()
 
 
 class Listener:
-    """Feeds what the endpointer cuts out to the recogniser.
+    """Feeds the utterances of the endpointer to the recogniser.
 
-    In silence it checks only loudness, which costs next to nothing.
+    In silence only the level is checked, which costs next to nothing.
 
     :param recogniser: :class:`mhri.voice.io.recogniser.Recogniser`
-    :param is_stop: function that tells whether a :class:`Hypothesis` is a stop to be obeyed
+    :param is_stop: function that returns whether a :class:`Hypothesis` is a valid stop
     """
 
     def __init__(self, recogniser, is_stop):
@@ -65,7 +65,7 @@ class Listener:
 
     @property
     def floor_db(self):
-        """What counts as silence [dB of one step of 16 bit]."""
+        """The level of silence [dB of one step of 16 bit]."""
         return self._endpointer.floor_db
 
     @property
@@ -74,7 +74,7 @@ class Listener:
         return self._endpointer.speaking
 
     def feed(self, block):
-        """Take in one block; return the list of what was heard by it."""
+        """Handle one block; return its events."""
         self._at_s += BLOCK_S
         state = self._endpointer.feed(block)
         if state == BEGIN:
@@ -88,14 +88,14 @@ class Listener:
         return self.finish()
 
     def _spotted(self, word):
-        """Wrap what the spotter heard."""
+        """Return the events for a spotted word, [] for ''."""
         return [Spotted(self._at_s, word)] if word else []
 
     def _look(self):
-        """Look for a hidden stop in each pause of a short utterance."""
+        """Check for a hidden stop in each pause of a short utterance."""
         silent_s = self._endpointer.silent_s
         if silent_s < _EARLY_S:
-            # Whatever was found before, the utterance goes on.
+            # The utterance goes on: discard an earlier result.
             self._early = self._early if silent_s else _NOT_LOOKED
             return []
         if self._early is not _NOT_LOOKED or self._at_s - self._began_s > _SHORT_S:
@@ -104,7 +104,7 @@ class Listener:
         return [Spotted(self._at_s, found.text)] if found and self._is_stop(found) else []
 
     def finish(self):
-        """End the open utterance, also when the stream ends; return what was heard."""
+        """End the open utterance, also at the end of the stream; return its events."""
         if not self._sound:
             return []
         sound, self._sound = b''.join(self._sound), []
@@ -115,7 +115,7 @@ class Listener:
         return [Ended(self._began_s, self._at_s, found, self._computed_s)]
 
     def _recognise(self, sound):
-        """Return what the recogniser makes of a sound; add up what that takes."""
+        """Recognise a sound, and add up the processor time."""
         before_s = time.thread_time()
         found = self._recogniser.recognise(sound)
         self._computed_s += time.thread_time() - before_s

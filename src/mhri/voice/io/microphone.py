@@ -1,16 +1,16 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The process that hears a microphone: ``python3 -m mhri.voice.io.microphone <part of its name>``.
+"""The process that reads a microphone, a :class:`Child` whose argument is part of its name.
 
-It writes a line of JSON, ``{"device": name}`` or ``{"absent": reason}``, and then raw sound in the
-form of :mod:`mhri.voice.sound`, until the microphone is gone or nobody reads any more. It
-is a separate process because the one that recognises reads nothing for tenths of a second, and
-PortAudio would throw away what is said meanwhile: a stop, perhaps.
+It sends ``{"device": name}`` or ``{"absent": reason}``, and then blocks of raw sound in the form of
+:mod:`mhri.voice.sound`, until the microphone or the receiver is gone. It is a separate process
+because recognition blocks for tenths of a second, and PortAudio would drop the sound meanwhile,
+which might be a stop.
 """
-import json
 import os
 import sys
 
+from mhri.devices.io.child import parent
 from mhri.devices.io.reader import DeviceAbsent
 from mhri.voice.sound import BLOCK_BYTES, RATE_HZ
 
@@ -19,7 +19,7 @@ def open_microphone(wanted):
     """Return (stream of PortAudio, name of the device).
 
     :param wanted: part of the name, in any case; '' for the system's default
-    :raises DeviceAbsent: there is none, or it cannot be opened
+    :raises DeviceAbsent: no microphone is connected, or it cannot be opened
     """
     try:
         import pyaudio
@@ -58,23 +58,17 @@ def _find(audio, wanted):
 
 def main():
     """Run until the microphone is gone."""
-    # What PortAudio and ALSA write to the standard output must not look like sound.
-    out = os.fdopen(os.dup(1), 'wb', buffering=0)
-    os.dup2(2, 1)
+    out = parent()
     try:
-        stream, name = open_microphone(sys.argv[1] if len(sys.argv) > 1 else '')
+        stream, name = open_microphone(sys.argv[1])
     except DeviceAbsent as reason:
-        out.write((json.dumps({'absent': str(reason)}) + '\n').encode())
+        out.send({'absent': str(reason)})
         return
     try:
-        out.write((json.dumps({'device': name}) + '\n').encode())
+        out.send({'device': name})
         while True:
-            # Sound lost under load is no reason to give up the microphone.
-            out.write(stream.read(BLOCK_BYTES // 2, exception_on_overflow=False))
+            # Tolerate lost sound under load instead of closing the microphone.
+            out.send(stream.read(BLOCK_BYTES // 2, exception_on_overflow=False), wait=True)
     except (OSError, KeyboardInterrupt):
-        # Pulled out, or nobody reads: whoever reads sees the end.
+        # Unplugged, or the receiver is gone.
         os._exit(0)
-
-
-if __name__ == '__main__':
-    main()

@@ -1,14 +1,13 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Speech to words by pocketsphinx, offline, with its English model.
+"""Recognises speech by pocketsphinx, offline, with its English model.
 
-Four searches work together. The spotter hears a stop while the word is being spoken. When an
-utterance has ended, the command search fits the grammar to it, whatever was said; and the filler, a
-loop of all sounds of the language, says how well anything would have fitted. Where the command fits
-much worse than the filler does in the same place, or something was spoken before its first word,
-the utterance was no command; and several small signs of that count together. Where it was a motion,
-the fourth search fits all that is none ("robot record" for "robot forward"): a motion that does not
-fit better by far is none.
+Four searches work together. The spotter detects a stop while the word is being spoken. After the
+end of an utterance, the command search always fits the grammar to it; and the filler, a loop of all
+sounds of the language, yields the best possible fit. If the command fits much worse than the filler
+in the same place, or there is speech before its first word, the utterance was not a command;
+several weak signs of that are combined. For a motion, the fourth search fits all other commands
+("robot record" for "robot forward"): the motion has to fit far better.
 """
 import math
 import os
@@ -21,48 +20,50 @@ from mhri.voice.sound import MODEL, SOUNDS
 
 try:
     import pocketsphinx
-except ImportError as error:  # Said when the voice is used; the other ways to drive need none.
+except ImportError as error:  # reported when the voice is used; other inputs do not need it
     pocketsphinx = None
     IMPORT_PROBLEM = str(error)
 
 _NOTHING = '(NULL)'
 _NO_WORDS = '<+[('
-# The ends of a short word are uncertain by so much [frames of 10 ms].
+# Uncertainty of the ends of a short word [frames of 10 ms].
 _SHORT_FRAMES = 5
-# In frames: an utterance begins with 0.3 s of what was before it, and then speech takes a moment.
-_USUAL_START, _LATEST_FRAMES, _LONGEST_GAPS = 33, 12, 40
+# In frames: an utterance begins with 0.3 s of earlier sound, and speech starts a moment later.
+_USUAL_START, _MAX_LATE_FRAMES, _MAX_GAPS = 33, 12, 40
 _COMMAND, _STILL, _FILLER = 'command', 'still', 'filler'
-# Steps below the limit at which nothing is obeyed, push-to-talk or not.
+# Steps below the limit at which everything is refused, even with push-to-talk.
 _SURELY_NOT = -3.0
 _REMEDY = 'install python3-pocketsphinx and pocketsphinx-en-us'
+_DICTIONARY = os.path.join(MODEL, 'cmudict-en-us.dict')
 
 
 class RecogniserError(Exception):
-    """Speech cannot be recognised here; the text says what is missing and the remedy."""
+    """Speech cannot be recognised here; the text has the missing part and the remedy."""
 
 
 @dataclass(frozen=True)
 class Tuning:
-    """What tells commands from talk; found by ``test/bench/bench_voice.py --tune``.
+    """Parameters to distinguish commands from talk, from ``test/bench/bench_voice.py --tune``.
 
     ``stop_threshold`` is the likelihood ratio at which a stop is spotted (smaller: sooner, and more
-    often in talk), ``wake_threshold`` the same for the wake words. The next three say how much
-    worse than the filler a command may fit [score per 10 ms]: its worst word, its first word where
-    that is the wake word, and all of it. ``latest_start`` is where the first word has to begin
-    [frames of 10 ms, 0.3 s of them from before the utterance]: what is spoken before makes it talk.
-    A stop has to fit as well as ``stop_word`` in that word, and lasts ``stop_frames`` at least.
-    ``unspotted_wake`` takes the place of ``first_word`` where the spotter has not heard the wake
-    word. At the limit the confidence is 0.5; one ``slope`` below it 0.27.
+    often in talk), ``wake_threshold`` the same for the wake words. ``worst_word``, ``first_word``
+    (if that is the wake word) and ``all_words`` are limits of the fit compared with the filler
+    [score per 10 ms]. ``latest_start`` is the limit for the begin of the first word [frames of
+    10 ms, including 0.3 s from before the utterance]: with earlier speech it is talk. The word of a
+    stop has to fit at least as well as ``stop_word``, and last at least ``stop_frames``.
+    ``unspotted_wake`` replaces ``first_word`` if the spotter has not detected the wake word. At the
+    limit the confidence is 0.5; one ``slope`` below it 0.27.
 
-    ``motion_lead`` is by how much the whole of a motion has to fit better than the best phrase that
-    moves nothing [score], whether push-to-talk is held or not; ``lead_slope`` as ``slope``. Of 160
-    motions 250 refuses 7 that were right; of 180 other commands 4 move, instead of 10 (500: 17 and
-    4), with push-to-talk 7 instead of 14; ``doc/input_voice.md`` has the table.
+    ``motion_lead`` is the required lead of a whole motion over the best phrase that moves nothing
+    [score], with and without push-to-talk; ``lead_slope`` is like ``slope``. With 250, 7 of 160
+    correct motions are refused, and 4 of 180 other commands move a robot instead of 10 (with 500:
+    17 and 4), with push-to-talk 7 instead of 14; ``doc/input_voice.md`` has the table.
 
     The others are the weights of a logistic regression over the :class:`Fit` of a command with more
-    than the wake word, which has to be 0.5 as well: commands against talk of both tuning runs, ten
-    voices in three rooms, with ``by_start`` chosen by leaving one voice out after the other. All
-    limits lie 0.4 of a slope below what those ten gave, since other voices fit worse.
+    than the wake word, whose result has to be at least 0.5, too. It was fitted to commands against
+    talk of both tuning runs, ten voices in three rooms; ``by_start`` is from leave-one-out cross
+    validation over the voices. All limits are 0.4 of a slope below the results for those ten, since
+    other voices fit worse.
     """
 
     stop_threshold: float = 1e-10
@@ -88,11 +89,11 @@ class Tuning:
 
 @dataclass(frozen=True)
 class Fit:
-    """How a command fits against another search in the same place [score per frame of 10 ms].
+    """The fit of a command compared with another search in the same place [score per 10 ms frame].
 
-    Negative is worse than the other. ``start`` is the frame where the first word begins, ``gaps``
-    how many frames between the first and the last word belong to none. ``words``: the word and its
-    fit for each.
+    Negative is worse than the other. ``start`` is the first frame of the first word, ``gaps`` the
+    number of frames between the first and the last word that belong to no word. ``words`` are
+    (word, fit).
     """
 
     worst: float
@@ -104,11 +105,11 @@ class Fit:
     words: tuple = ()
 
     def margin(self, tuning, stops=(), woken=True, spotted=True):
-        """Return how far it is above the limits [score per frame], negative: below one.
+        """Return the minimum margin over the limits [score per frame], negative below a limit.
 
-        :param stops: the words that stop, where it is about a stop, which may be said anywhere
+        :param stops: the words for a stop, if it may be one: a stop may be said at any place
         :param woken: its first word is the wake word
-        :param spotted: the spotter has heard a wake word as well
+        :param spotted: the spotter has detected a wake word, too
         """
         worst, mean = self.worst - tuning.worst_word, self.mean - tuning.all_words
         if stops:
@@ -119,25 +120,25 @@ class Fit:
         return min(worst, first, mean, tuning.latest_start - self.start)
 
     def logit(self, tuning, woken=True):
-        """Return the logarithm of the odds that it is a command, all signs taken together.
+        """Return the logarithm of the odds that it is a command, from all signs together.
 
-        No sign counts for more than what was met in tuning.
+        Each sign is clipped to its range in the tuning.
         """
         worst, second, mean = (max(-60.0, min(0.0, value))
                                for value in (self.worst, self.second, self.mean))
         first = max(-40.0, min(0.0, self.first)) if woken else 0.0
-        late = max(0, min(_LATEST_FRAMES, self.start - _USUAL_START))
+        late = max(0, min(_MAX_LATE_FRAMES, self.start - _USUAL_START))
         return (tuning.at_rest + tuning.by_worst * worst + tuning.by_second * second
                 + tuning.by_first * first + tuning.by_mean * mean
-                + tuning.by_gaps * min(_LONGEST_GAPS, self.gaps) + tuning.by_start * late)
+                + tuning.by_gaps * min(_MAX_GAPS, self.gaps) + tuning.by_start * late)
 
 
 def compare(fitted, anything):
     """Return the :class:`Fit` of one search against another.
 
-    What the first search took for silence counts for the worst word: talk hides there.
+    Silence of the first search counts for the worst word, too, since talk may be hidden in it.
 
-    :param fitted: [(word, first frame, last frame, score)] of the first; one at least is a word
+    :param fitted: [(word, first frame, last frame, score)] of the first, with at least one word
     :param anything: the same of the other
     """
     length = max(last for _, _, last, _ in anything + fitted) + 1
@@ -164,9 +165,9 @@ def compare(fitted, anything):
 
 @dataclass(frozen=True)
 class Hypothesis:
-    """The words that fit an utterance best, and how sure that is.
+    """The words that fit an utterance best, and their confidence.
 
-    ``confidence`` is in [0, 1], 0.5 and more meaning a command.
+    ``confidence`` is in [0, 1]; 0.5 and more is a command.
     """
 
     text: str
@@ -174,21 +175,20 @@ class Hypothesis:
 
 
 class Dictionary:
-    """The sounds of the model's words; read when first asked."""
+    """The pronunciations of the model's words, read at their first use."""
 
-    def __init__(self, path=os.path.join(MODEL, 'cmudict-en-us.dict')):
-        self._path = path
+    def __init__(self):
         self._sounds = None
 
     def _read(self):
         if self._sounds is not None:
             return
         try:
-            with open(self._path, encoding='utf-8') as lines:
+            with open(_DICTIONARY, encoding='utf-8') as lines:
                 rows = [line.split(None, 1) for line in lines]
         except OSError as error:
             raise RecogniserError('cannot read {}: {}; {}'.format(
-                self._path, error.strerror or error, _REMEDY))
+                _DICTIONARY, error.strerror or error, _REMEDY))
         sounds = {}
         for word, spoken in rows:
             sounds.setdefault(word.partition('(')[0], []).append(spoken.strip())
@@ -199,14 +199,14 @@ class Dictionary:
         return word in self._sounds
 
     def sounds(self, word):
-        """Return the ways in which a word is spoken, as CMU phones; [] where it is not there."""
+        """Return the pronunciations of a word as CMU phones, [] if it is missing."""
         self._read()
         return self._sounds.get(word, [])
 
     def spoken(self, word, language):
-        """Return the ways in which a word is spoken: the language's own come first.
+        """Return the pronunciations of a word, those of the language first.
 
-        :raises RecogniserError: it has none
+        :raises RecogniserError: the word has no pronunciation
         """
         ways = list(language.pronunciations.get(word, ())) or self.sounds(word)
         if not ways:
@@ -225,8 +225,8 @@ class Dictionary:
 def new_decoder(folder, rows, **settings):
     """Return a decoder of pocketsphinx with a dictionary of some rows (word, sounds).
 
-    :param folder: for its files, needed no longer than this takes
-    :param settings: options of pocketsphinx; an empty text counts as not given
+    :param folder: for its files, needed only during this call
+    :param settings: options of pocketsphinx; an empty text is ignored
     """
     path = os.path.join(folder, 'words.dict')
     with open(path, 'w', encoding='utf-8') as stream:
@@ -238,7 +238,7 @@ def new_decoder(folder, rows, **settings):
     config = pocketsphinx.Decoder.default_config()
     set_as = {str: config.set_string, bool: config.set_boolean, int: config.set_int,
               float: config.set_float}
-    # The endpointer has cut the sound already.
+    # The endpointer has removed silence already.
     given = dict(settings, hmm=SOUNDS, dict=path, logfn=os.devnull, remove_silence=False)
     for key, value in given.items():
         if value != '':
@@ -251,7 +251,7 @@ def new_decoder(folder, rows, **settings):
 
 
 class Recogniser:
-    """Hears the phrases of one grammar.
+    """Recognises the phrases of one grammar.
 
     :param grammar: :class:`mhri.voice.grammar.Grammar`
     :param dictionary: :class:`Dictionary`
@@ -268,13 +268,13 @@ class Recogniser:
         self._voice = voice
         self._spotting = self._wake_spotted = False
         with tempfile.TemporaryDirectory(prefix='mhri_voice_') as folder:
-            # A stop is heard as by anybody, too: of what one has learned, some is missed.
+            # Spot stops with the untaught model, too: a taught one misses some.
             self._spotters = [self._new_spotter(folder, grammar, one)
                               for one in sorted({'', voice})]
         self.set_grammar(grammar)
 
     def _rows(self, words, language):
-        """Return (word, sounds) of words; those of the language come before the dictionary's.
+        """Return (word, sounds) of words, the language's own before the dictionary's.
 
         :raises RecogniserError: a word has no sounds
         """
@@ -297,7 +297,7 @@ class Recogniser:
                            beam=1e-100, pbeam=1e-100, mean=voice)
 
     def set_grammar(self, grammar):
-        """Listen for other robots from the next utterance on; takes about 0.2 s.
+        """Use another grammar, e.g. for other robots, from the next utterance on (0.2 s).
 
         :raises RecogniserError: a word of the language has no sounds
         """
@@ -306,9 +306,9 @@ class Recogniser:
         rows += [('sound_' + phone.lower(), phone) for phone in phones]
         loop = ' | '.join('sound_' + phone.lower() for phone in phones)
         with tempfile.TemporaryDirectory(prefix='mhri_voice_') as folder:
-            # compallsen: only so are the scores of two searches comparable. topn: more of the
-            # model's densities than usual, which helps in noise. The beams: what was said must not
-            # be lost early where the voice is unlike those of the model.
+            # compallsen: required for comparable scores of two searches. topn: more of the
+            # model's densities than usual, which helps in noise. Wide beams: words must not
+            # be lost early if the voice differs from those of the model.
             decoder = new_decoder(folder, rows, compallsen=True, cmn='batch', topn=8, beam=1e-120,
                                   wbeam=1e-100, pbeam=1e-120, mean=self._voice)
         decoder.set_jsgf_string(_COMMAND, grammar.jsgf())
@@ -321,7 +321,7 @@ class Recogniser:
     # Stops and wake words, while they are spoken.
 
     def begin(self, sound):
-        """Begin an utterance with the sound that led to it; return as :meth:`go_on` does."""
+        """Begin an utterance with its first sound; return the same as :meth:`go_on`."""
         self.end()
         for spotter in self._spotters:
             spotter.start_utt()
@@ -329,10 +329,10 @@ class Recogniser:
         return self.go_on(sound)
 
     def go_on(self, sound):
-        """Take in more sound of the utterance; return the stop or wake word heard in it, or ''.
+        """Handle more sound of the utterance; return the stop or wake word detected, or ''.
 
-        A wake word is told once for each utterance. Shorter than ``stop_frames`` it is no stop but
-        a part of another word: "fastest" has one.
+        A wake word is reported once for each utterance. A stop shorter than ``stop_frames`` is
+        part of another word, such as "fastest".
         """
         heard = [self._spotted(spotter, sound) for spotter in self._spotters]
         stops = [word for word in heard if word in self._language.stop]
@@ -343,7 +343,7 @@ class Recogniser:
         return next(filter(None, stops + heard), '')
 
     def _spotted(self, spotter, sound):
-        """Return the stop or wake word that one of the spotters hears, or ''."""
+        """Return the stop or wake word detected by a spotter, or ''."""
         spotter.process_raw(sound, False, False)
         if spotter.hyp() is None:
             return ''
@@ -351,7 +351,7 @@ class Recogniser:
                  for part in spotter.seg()]
         woken = [word for word, _ in parts if word in self._language.wake_words]
         if woken and not self._wake_spotted:
-            # It does not begin anew: the end of a wake word is the beginning of the stop behind it.
+            # Do not restart the spotter: the end of a wake word is part of the stop after it.
             self._wake_spotted = True
             return woken[0]
         return next((word for word, frames in parts if word in self._language.stop
@@ -379,7 +379,7 @@ class Recogniser:
                 for part in decoder.seg()]
 
     def _lead(self, fitted, sound):
-        """Return how surely a motion was said, not something that moves nothing; 0 at the limit."""
+        """Return the lead of a motion over phrases that move nothing, in slopes over the limit."""
         other = self._segments(_STILL, sound)
         if not other:
             return math.inf
@@ -407,5 +407,5 @@ class Recogniser:
             steps = min(steps, fit.logit(self._tuning, woken))
         if steps > _SURELY_NOT and self._moves(text):
             steps = min(steps, self._lead(fitted, sound))
-        # Bounded, since exp() has a largest argument.
+        # Clipped, since exp() overflows.
         return Hypothesis(text, 1.0 / (1.0 + math.exp(-max(-50.0, min(50.0, steps)))))

@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Teaching the recogniser one person's voice, from sentences read aloud once.
+"""Teaches the recogniser one person's voice, from sentences read aloud once.
 
-A voice is one file, the means of the model's Gaussians moved towards that person's
-(:mod:`mhri.voice.adaptation`). pocketsphinx takes it by its option ``-mean``, in 5prealpha and
-in 5.0 alike. Nothing of what was said is kept.
+A voice is a file with the means of the model's Gaussians, adapted to that person
+(:mod:`mhri.voice.adaptation`). pocketsphinx loads it by its option ``-mean``, both in 5prealpha and
+in 5.0. Recordings are not kept.
 """
 import os
 import tempfile
@@ -20,25 +20,25 @@ from mhri.voice.sound import BLOCK_S, RATE_HZ, SOUNDS
 from mhri.voice.speech import SURE
 from mhri.voice.teaching import sentence_problem
 
-# A sentence has ended after so much silence; nobody reads after so much of it [s].
-_PAUSE_S, _PATIENCE_S = 1.0, 20.0
+# Silence that ends a sentence, and time-out for its first word [s].
+_PAUSE_S, _TIMEOUT_S = 1.0, 20.0
 _READ_S = 0.2
 _CEPSTRA = 13
-# RMS of a sentence to RMS of the noise that it is learned with, too [dB].
+# Signal-to-noise ratio of the copies of the sentences with noise, by RMS [dB].
 _NOISE_DB = 10.0
-# Names to be called in the sentences that check a voice.
+# Robot names in the sentences that check a voice.
 _ROBOTS = ('bot1', 'bot2', 'bot3')
 
 
-def read_sounds(folder=SOUNDS):
-    """Return the model that any voice begins with, :class:`mhri.voice.adaptation.Sounds`.
+def read_sounds():
+    """Return the model before adaptation, :class:`mhri.voice.adaptation.Sounds`.
 
     :raises OSError: a file cannot be read
-    :raises ModelError: it is a model of another kind
+    :raises ModelError: the model is of another kind
     """
     data = {}
     for name in ('mdef', 'means', 'variances', 'sendump'):
-        with open(os.path.join(folder, name), 'rb') as stream:
+        with open(os.path.join(SOUNDS, name), 'rb') as stream:
             data[name] = stream.read()
     phones = adaptation.read_phones(data['mdef'])
     return adaptation.Sounds(phones, adaptation.read_gaussians(data['means'], 'means'),
@@ -47,9 +47,9 @@ def read_sounds(folder=SOUNDS):
 
 
 def check_voice(path):
-    """Do nothing where a file is a voice for the model that is installed.
+    """Check that a file is a voice for the installed model.
 
-    :raises OSError, ModelError: it is none
+    :raises OSError, ModelError: the file is unusable
     """
     shapes = []
     for name in (os.path.join(SOUNDS, 'means'), path):
@@ -60,14 +60,14 @@ def check_voice(path):
 
 
 def next_sentence(source):
-    """Return the sound of the next sentence that is read aloud, b'' if nobody reads.
+    """Return the sound of the next sentence read aloud, b'' without one.
 
     :param source: of :mod:`mhri.voice.io.audio`, open
-    :raises DeviceLost: it has ended before a sentence began
+    :raises DeviceLost: the source has ended before a sentence began
     """
     endpointer, sound, since = Endpointer(), [], []
     waited_s = 0.0
-    while waited_s < (_PAUSE_S if sound else _PATIENCE_S):
+    while waited_s < (_PAUSE_S if sound else _TIMEOUT_S):
         try:
             block = source.read(_READ_S)
         except DeviceLost:
@@ -88,12 +88,12 @@ def next_sentence(source):
 
 
 class Teacher:
-    """Collects sentences that somebody has read, and learns the voice from them.
+    """Collects sentences read aloud, and learns the voice from them.
 
     :param language: :class:`mhri.voice.language.Language`
     :param dictionary: :class:`mhri.voice.io.recogniser.Dictionary`
-    :raises OSError, ModelError: the model cannot be learned with, see :func:`read_sounds`
-    :raises RecogniserError: a word of a sentence has no sounds
+    :raises OSError, ModelError: the model is unsuitable, see :func:`read_sounds`
+    :raises RecogniserError: a word of a sentence has no pronunciation
     """
 
     def __init__(self, language, dictionary):
@@ -106,14 +106,14 @@ class Teacher:
                       for text in language.teach + language.teach_check}
 
     def take(self, text, sound):
-        """Take in a sentence; return why it has to be read again, '' if it is good."""
+        """Handle a sentence; return why it has to be read again, '' if it is good."""
         problem = sentence_problem(sound, sum(len(ways[0]) for ways in self._ways[text]))
         if not problem:
             self._heard[text] = sound
         return problem
 
     def good(self, texts):
-        """Return how many of some sentences were taken in."""
+        """Return the number of good sentences among some."""
         return sum(text in self._heard for text in texts)
 
     def learn(self):
@@ -121,7 +121,7 @@ class Teacher:
         places = {name: place for place, name in enumerate(self._sounds.phones)}
         texts = [text for text in self._language.teach if text in self._heard]
         said = []
-        # Each as it was read, and once more over noise.
+        # Each sentence as it was read, and once more with noise.
         random = np.random.RandomState(1)
         sounds = [self._heard[text] for text in texts]
         sounds += [in_noise(sound, random) for sound in sounds]
@@ -133,10 +133,11 @@ class Teacher:
         return adaptation.write_gaussians(adaptation.adapted(self._sounds, said).means)
 
     def understood(self, voice=''):
-        """Return how many of the sentences that check a voice are taken for what they are, and how
-        many for something else; the others are taken for nothing.
+        """Return the numbers of check sentences recognised correctly and wrongly.
 
-        :param voice: path of a voice; '': any voice
+        The remaining ones are not recognised as a command.
+
+        :param voice: path of a voice, '' for any voice
         """
         grammar = Grammar(self._language, _ROBOTS, self._dictionary.__contains__)
         recogniser = Recogniser(grammar, self._dictionary, voice=voice)
@@ -155,11 +156,11 @@ class Teacher:
 
 
 def in_noise(sound, random):
-    """Return a sound with pink noise under it, 16 bit as well.
+    """Return a sound with added pink noise, 16 bit as well.
 
-    Of what was learned in a quiet room alone, a loud one knows nothing: there noise is no silence,
-    and talk is taken for commands. White noise at 10 dB, two voices: 45 % of the commands were
-    right, with this 88 %, and of 15 stops 8 were heard, with this 12.
+    A voice learned only in a quiet room fails in a loud one: noise is not recognised as silence,
+    and talk is recognised as commands. In white noise at 10 dB, with two voices, 45 % of the
+    commands were right, with this 88 %, and 8 of 15 stops were detected, with this 12.
     """
     plain = np.frombuffer(sound, dtype='<i2').astype(float)
     spectrum = np.fft.rfft(random.standard_normal(len(plain)))
@@ -185,7 +186,7 @@ def _cepstra(sounds):
             decoder.end_utt()
         for name in sorted(os.listdir(logs)):
             with open(os.path.join(logs, name), 'rb') as stream:
-                # A count comes first.
+                # The file starts with a count.
                 values = np.frombuffer(stream.read()[4:], dtype='<f4')
             found.append(values.reshape(-1, _CEPSTRA).astype(float))
     return found

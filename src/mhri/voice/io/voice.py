@@ -1,32 +1,29 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The voice as an input device: a process that listens, and the rules for what was heard."""
-import json
+"""The voice as an input device: the recognition process, and the rules for spoken commands."""
 import os
-import select
-import subprocess
 import threading
 import time
 
-from mhri.devices.io import child
+from mhri.devices.io.child import Child
 from mhri.devices.io.reader import DeviceAbsent, DeviceLost, Reader, Reading
 from mhri.voice.attempts import Attempts
 from mhri.voice.grammar import Command, Grammar, STOP
-from mhri.voice.speech import Heard, VoiceRules
+from mhri.voice.speech import Utterance, VoiceRules
 from mhri.voice.teaching import voice_path, voice_problem
 
-# Loading the model takes a second, on a busy computer several.
+# Loading the model takes a second, several on a busy computer.
 _OPEN_S = 30.0
 _END_S = 0.5
 
 
 class VoiceReader(Reader):
-    """Speech read into axes: axes[0] left, axes[1] forward, as fractions of the speed limit.
+    """Converts speech to axes: axes[0] left, axes[1] forward, as fractions of the speed limit.
 
     :param language: :class:`mhri.voice.language.Language`
-    :param path: the file it came from
-    :param on_heard: called with :class:`mhri.voice.speech.Heard` for each utterance
-    :param on_act: called with each :class:`Command` that others carry out (PANEL, MODE, STOP)
+    :param path: its file
+    :param on_heard: called with :class:`mhri.voice.speech.Utterance` for each utterance
+    :param on_act: called with each :class:`Command` for other nodes (PANEL, MODE, STOP)
 
     The callbacks are called on the thread of :meth:`read`, and must return at once.
     """
@@ -44,12 +41,10 @@ class VoiceReader(Reader):
         self._language = language
         self._rules = VoiceRules(language)
         self._attempts = Attempts()
-        self._robots = ()
+        self._robots = self._accessories = ()
         self._grammar = None
-        self._told = None
-        self._process = None
-        self._orders = None
-        self._held = b''
+        self._sent = None
+        self._child = None
         self._last = None
         self._began = 0.0
         self._woken = False
@@ -57,57 +52,60 @@ class VoiceReader(Reader):
 
     # From other threads.
 
-    def want_source(self, source):
-        """Listen to this, see :func:`mhri.voice.io.audio.open_source`; '' is the microphone."""
+    def choose_source(self, source):
+        """Set the source, see :func:`mhri.voice.io.audio.open_source`; '' is the microphone."""
         self._source = str(source)
 
-    def want_voice(self, name):
-        """Listen to the one whose voice was taught under this name; '' is anybody."""
+    def choose_voice(self, name):
+        """Set the taught voice by its name; '' is any voice."""
         self._voice = str(name)
 
     def set_robots(self, robots):
-        """Listen for these robots, the names in the panel's order."""
+        """Set the robots that can be addressed, names in the panel's order."""
         with self._lock:
             self._robots = tuple(robots)
 
+    def set_accessories(self, rows):
+        """Set the accessories of the robots, each a :class:`mhri.voice.accessories.SpokenRow`."""
+        with self._lock:
+            self._accessories = tuple(rows)
+
     def push_to_talk(self, held):
-        """Note that push-to-talk is held or let go."""
+        """Handle that push-to-talk is held or released."""
         with self._lock:
             self._rules.push_to_talk(held, self._clock())
 
     def set_drives(self, drives):
-        """Note whether the voice is the source that drives."""
+        """Set whether the voice is the driving source."""
         self._drives = drives
 
     # Reader.
 
     def open(self):
-        """Begin to listen; see :meth:`Reader.open`."""
+        """Start listening; see :meth:`Reader.open`."""
         self.close()
         self._opened_source = source = self._source
         self._opened_voice = self._voice
         voice = _voice_file(self._opened_voice)
-        orders, self._orders = os.pipe()
         try:
-            self._process = subprocess.Popen(
-                child.command('mhri.voice.io.listening', str(orders)),
-                stdin=None if source == '-' else subprocess.DEVNULL, stdout=subprocess.PIPE,
-                stderr=subprocess.DEVNULL, pass_fds=(orders,))
+            self._child = Child('mhri.voice.io.listening',
+                                **({'stdin': None} if source == '-' else {}))
         except OSError as error:
             raise DeviceAbsent('the process that listens cannot be started: {}'.format(error))
-        finally:
-            os.close(orders)
         with self._lock:
             self._rules.reset()
-            self._told = self._robots
+            self._sent = self._addressed()
         self._attempts.clear()
-        self._held, self._last, self._woken = b'', None, False
-        self._order({'source': source, 'language': self._path, 'robots': self._told,
-                     'voice': voice})
+        self._last, self._woken = None, False
+        self._order({'source': source, 'language': self._path, 'voice': voice, **self._sent})
         return self._wait_open()
 
+    def _addressed(self):
+        """Return what the process has to know; call it with the lock held."""
+        return {'robots': self._robots, 'accessories': self._accessories}
+
     def _wait_open(self):
-        """Wait until the process listens; return what it listens to."""
+        """Wait until the process is listening; return the name of its source."""
         deadline = self._clock() + _OPEN_S
         while self._clock() < deadline:
             for event in self._events(deadline - self._clock()):
@@ -118,21 +116,22 @@ class VoiceReader(Reader):
         raise DeviceAbsent('the process that listens does not answer')
 
     def _opened(self, event):
-        """Take note of what is listened to, and for whom."""
+        """Handle the name of the source, and the robots that can be addressed."""
         self.note = '; '.join(event['notes'])
-        # Which words the dictionary has, the other process has looked up.
-        self._grammar = Grammar(self._language, event['robots'], event['words'].__contains__)
+        # The other process has looked up the words in the dictionary.
+        self._grammar = Grammar(self._language, event['robots'], event['words'].__contains__,
+                                event['accessories'])
 
     def read(self, timeout_s):
-        """Wait for what is heard; see :meth:`Reader.read`."""
+        """Wait for speech; see :meth:`Reader.read`."""
         if (self._source, self._voice) != (self._opened_source, self._opened_voice):
             raise DeviceLost('something else is to be listened to')
         with self._lock:
-            robots = self._robots
+            addressed = self._addressed()
             wait_s = min(timeout_s, self._wait_s(self._clock()))
-        if robots != self._told:
-            self._told = robots
-            self._order({'robots': robots})
+        if addressed != self._sent:
+            self._sent = addressed
+            self._order(addressed)
         for event in self._events(wait_s):
             self._take(event)
         with self._lock:
@@ -147,16 +146,16 @@ class VoiceReader(Reader):
         return reading
 
     def _wait_s(self, now):
-        """Return how long the reading stays what it was last; call it with the lock held."""
+        """Return the remaining validity of the last reading [s]; call it with the lock held."""
         if self._last is None or self._rules.stick(now) != self._last.axes:
-            # It has changed between two calls.
+            # The state has changed between two calls.
             return 0.0
         return self._rules.next_change(now)
 
     def _take(self, event):
-        """Take in one event of the process.
+        """Handle one event of the process.
 
-        :raises DeviceLost: it listens no longer
+        :raises DeviceLost: the process no longer listens
         """
         kind, now = event['kind'], self._clock()
         if kind == 'open':
@@ -171,7 +170,7 @@ class VoiceReader(Reader):
             raise DeviceLost(event.get('reason', 'the process that listens failed'))
 
     def _spotted(self, word, now):
-        """Obey a stop while it is spoken."""
+        """Carry out a stop while it is being spoken."""
         if word in self._language.wake_words:
             self._woken = True
             return
@@ -181,16 +180,16 @@ class VoiceReader(Reader):
         self._attempts.clear()
         if at_once:
             self._on_act(Command(STOP))
-            self._on_heard(Heard(word, STOP, True, '', 1.0, None))
+            self._on_heard(Utterance(word, STOP, True, '', 1.0, None))
 
     def _ended(self, event, now):
         """Judge an utterance."""
         text = event['text']
         began = min(now, max(self._began, now - event['age_s'] - 1.0))
         with self._lock:
-            heard = self._rules.hear(text, self._grammar.parse(text), event['confidence'], began,
-                                     now, now - event.get('spoken_s', now),
-                                     event.get('computed_s', 0.0), event.get('spoken_on', False))
+            heard = self._rules.judge(text, self._grammar.parse(text), event['confidence'], began,
+                                      now, now - event.get('spoken_s', now),
+                                      event.get('computed_s', 0.0), event.get('spoken_on', False))
             held = self._rules.talking(began)
         if heard.act is not None:
             self._on_act(heard.act)
@@ -201,49 +200,36 @@ class VoiceReader(Reader):
         """End the process; see :meth:`Reader.close`."""
         with self._lock:
             self._rules.rest()
-        process, self._process = self._process, None
-        orders, self._orders = self._orders, None
-        if orders is not None:
-            os.close(orders)
-        if process is None:
-            return
-        try:
-            process.wait(_END_S)
-        except subprocess.TimeoutExpired:
-            process.kill()
-            process.wait()
-        process.stdout.close()
+        child, self._child = self._child, None
+        if child is not None:
+            child.end(_END_S)
 
     def _order(self, order):
-        """Tell the process something.
+        """Send an order to the process.
 
-        :raises DeviceLost: it is gone
+        :raises DeviceLost: the process is gone
         """
         try:
-            os.write(self._orders, (json.dumps(order) + '\n').encode())
+            self._child.send(order)
         except OSError as error:
             raise DeviceLost('the process that listens is gone: {}'.format(error.strerror))
 
     def _events(self, timeout_s):
-        """Return the events that have come within a time.
+        """Return the events received within a time.
 
         :raises DeviceLost: the process has ended
         """
-        stream = self._process.stdout
-        if not select.select([stream], [], [], max(0.0, timeout_s))[0]:
-            return []
-        data = os.read(stream.fileno(), 65536)
-        if not data:
+        try:
+            return self._child.messages(timeout_s)
+        except EOFError:
             raise DeviceLost('the process that listens has ended, with {}'.format(
-                self._process.wait()))
-        *lines, self._held = (self._held + data).split(b'\n')
-        return [json.loads(line.decode()) for line in lines]
+                self._child.end(_END_S)))
 
 
 def _voice_file(name):
-    """Return the path of a voice that was taught, '' for nobody's.
+    """Return the path of a taught voice, '' for any voice.
 
-    :raises DeviceAbsent: there is none of that name
+    :raises DeviceAbsent: no voice has that name
     """
     if not name:
         return ''
@@ -252,6 +238,6 @@ def _voice_file(name):
         raise DeviceAbsent('~voice: ' + problem)
     path = voice_path(name, os.environ)
     if not os.path.exists(path):
-        raise DeviceAbsent('nobody has taught the voice {0}: rosrun mhri mhri_voice_teach {0}; or '
+        raise DeviceAbsent('there is no voice {0}: rosrun mhri mhri_voice_teach {0}; or '
                            'set ~voice to nothing'.format(name))
     return path

@@ -1,0 +1,58 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""What every test file gets by its folder: no ROS for what is pure, a screen for what draws.
+
+A test in ``test/<subject>/`` itself runs where there is no ROS and nothing is built.
+"""
+from pathlib import Path
+import re
+import sys
+
+import pytest
+
+TEST = Path(__file__).parent
+ROS = re.compile(r'((ros|gen)(py|lib|graph|launch|bag|param|topic|service|node|msg)|actionlib|tf'
+                 r'|tf2_\w+|cv_bridge|diagnostic_updater|message_filters|mhri\.(msg|srv)'
+                 r'|\w+_(msgs|srvs))\Z')
+
+
+class Refusal:
+    """An importer that refuses ROS to pure tests even where it is installed."""
+
+    pure = False
+
+    @classmethod
+    def find_spec(cls, name, path=None, target=None):
+        """Refuse a module of ROS; leave every other one to the next importer.
+
+        :raises ImportError: the module belongs to ROS, or is generated from the messages of mhri
+        """
+        if cls.pure and ROS.match(name):
+            raise ImportError('{} is of ROS, which tests in test/<subject> do without: put the '
+                              'test in test/<subject>/ros'.format(name), name=name)
+
+
+sys.meta_path.insert(0, Refusal)
+
+
+def enter(node):
+    """Refuse ROS from here on if a file is pure; return its folder as parts."""
+    # Not `path`, which pytest of Ubuntu 20.04 does not have.
+    folder = Path(str(node.fspath)).relative_to(TEST).parts[:-1]
+    Refusal.pure = len(folder) == 1 and folder != ('scripts',)
+    return folder
+
+
+def pytest_collectstart(collector):
+    """Give a file what its folder has, before it is imported."""
+    if isinstance(collector, pytest.Module):
+        folder = enter(collector)
+        if folder[-1] == 'gui' or folder == ('system', 'screen'):
+            collector.config.pluginmanager.import_plugin('support.qt')
+        elif folder[-1] == 'scripts':
+            collector.config.pluginmanager.import_plugin('support.checkout')
+
+
+def pytest_runtest_setup(item):
+    """Refuse ROS to what a pure test imports while it runs, too."""
+    enter(item)

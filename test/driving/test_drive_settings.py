@@ -1,0 +1,82 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""How fast the drive lets robots go: the operator's settings, the link, and limits that change."""
+import pytest
+from test_drive import A, B, driving, FORWARD, GO, NEUTRAL, Rig, SLOW
+
+from mhri.base.limits import Velocity
+from mhri.base.robot_types import Limits
+from mhri.driving.operator_lease import RETURN_S
+from mhri.robots.link_quality import link_share
+
+
+@pytest.mark.parametrize('bad', [
+    [SLOW, SLOW], *[[SLOW._replace(**{name: value})] for name, most in (
+        ('linear_mps', 5.0), ('angular_rad_s', 10.0))
+        for value in (0.0, -1.0, most + 0.001, float('nan'), float('inf'))]])
+def test_settings_that_cannot_be_leave_all_as_it_is(bad):
+    rig = driving('bot1')
+    assert rig.wish('bot2', settings=bad)
+    assert rig.drive.settings.limits == (0.5, 1.5) and rig.drive.lease.selected == ('bot1',)
+    assert rig.refused == [('/a', 'settings')]
+    assert not rig.wish('bot1', settings=[SLOW._replace(linear_mps=5.0, angular_rad_s=10.0)])
+    assert not rig.wish('bot1', settings=[SLOW])
+    assert rig.sent['bot1'] == Velocity(0.2, 0.0), 'a moving robot follows at once'
+
+
+def test_the_selected_robots_keep_together_and_slow_down_for_a_link():
+    rig = driving()
+    rig.note(rig.drive.open('bot2', Limits(0.2, 1.0), rig.now))
+    rig.wish('bot1', 'bot2', settings=[SLOW._replace(linear_mps=0.5)])
+    rig.stick(NEUTRAL)
+    rig.stick(FORWARD)
+    assert rig.sent['bot1'] == rig.sent['bot2'] == Velocity(0.2, 0.0)
+    rig.wish('bot1', 'bot2', settings=[SLOW._replace(linear_mps=0.5, together=False)])
+    rig.stick(FORWARD)
+    assert (rig.sent['bot1'], rig.sent['bot2']) == (GO, Velocity(0.2, 0.0))
+    rig.drive.on_round_trip('bot2', 0.8)
+    rig.wish('bot1', 'bot2', settings=[SLOW._replace(linear_mps=0.5, slow_with_link=True)])
+    rig.stick(FORWARD)
+    assert rig.drive.share == link_share(0.8) < 0.4
+    assert rig.sent['bot1'].linear_mps == pytest.approx(0.5 * link_share(0.8))
+    for trip_s in (0.4, float('nan')):
+        rig.drive.on_round_trip('bot1', 0.3)
+        rig.drive.on_round_trip('bot2', trip_s)
+        rig.run(0.1)
+        assert rig.drive.share == link_share(0.4 if trip_s == 0.4 else 0.3)
+    rig.wish('bot2')
+    rig.run(0.1)
+    assert rig.drive.share == 1.0, 'nothing is known of that link'
+
+
+def test_a_limit_that_rises_counts_at_once_for_a_robot_that_was_not_driven():
+    rig = Rig()
+    rig.wish('bot1')
+    for limit_mps in (0.3, 0.5):
+        rig.run(0.1)
+        rig.note(rig.drive.open('bot1', Limits(limit_mps, 1.0), rig.now))
+    assert rig.drive.stop_reason('bot1') == ''
+
+
+@pytest.mark.parametrize('who', [A, B])
+def test_a_limit_that_rises_counts_once_the_robot_is_selected_anew(who):
+    rig = driving('bot1')
+    rig.run(0.1)
+    for limit_mps, held_mps, stands in ((0.3, 0.3, ''), (0.5, 0.3, 'limit_raised')):
+        rig.note(rig.drive.open('bot1', Limits(limit_mps, 1.0), rig.now))
+        for axes in (NEUTRAL, FORWARD):
+            rig.stick(axes)
+        rig.run(0.1)
+        assert (rig.sent['bot1'].linear_mps, rig.drive.stop_reason('bot1')) == (held_mps, stands)
+    rig.wish('bot1', 'bot2')
+    assert rig.drive.stop_reason('bot1') == 'limit_raised', 'it was selected all the time'
+    if who == A:
+        rig.wish()
+    else:
+        rig.do('on_gone', A)
+        rig.there = [B]
+        rig.run(RETURN_S + 0.1)
+    rig.wish('bot1', who=who)
+    for axes in (NEUTRAL, FORWARD):
+        rig.stick(axes, who=who.name)
+    assert (rig.sent['bot1'], rig.drive.stop_reason('bot1')) == (GO, '')

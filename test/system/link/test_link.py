@@ -1,0 +1,207 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""A robot on a master of its own, linked to the host: driven, looked at, and whatever dies."""
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+import pytest
+
+from support import graph
+from support.linked import Linked, LONG_S, Operator
+from support.ros_system import wait_for
+
+pytestmark = pytest.mark.paired
+
+# The lease is 0.3 s, and the robot brakes; the rest is for a busy computer.
+STANDS_S = 3.0
+# Counts on another master how often the mux ends on purpose.
+ENDINGS = '''
+import rospy
+from std_msgs.msg import String
+rospy.init_node('endings', disable_signals=True)
+rest = [None] * 3
+def hear(message):
+    if not message.data and rest:
+        rest.pop()
+ears = rospy.Subscriber('/bot1/mhri_guard/heard', String, hear)
+while not ears.get_num_connections():
+    rospy.rostime.wallsleep(0.05)
+print('listens', flush=True)
+while rest:
+    rospy.rostime.wallsleep(0.05)
+'''
+
+
+@pytest.fixture(scope='module')
+def lab():
+    import rospy
+    from mhri.graph.ros.master_watch import MasterWatch
+    from mhri.link.ros.carrier import load_library
+    from support.robots import Witness
+    # Without it, this says the remedy.
+    load_library()
+    built = Linked()
+    try:
+        rospy.init_node('link_test', disable_signals=True)
+        MasterWatch().start()
+        built.watch_drive()
+        built.operator = Operator()
+        built.witness = Witness('bot1')
+        wait_for(built.witness.live, LONG_S, 'the odometry of bot1 on the host')
+        yield built
+    finally:
+        built.close()
+        rospy.signal_shutdown('done')
+
+
+def listeners_of_camera(lab):
+    """Return how many nodes listen to the robot's camera on the robot's own master."""
+    from mhri.graph.ros.master_api import MasterApi
+    state = MasterApi('/link_test', LONG_S, lab.robot.env['ROS_MASTER_URI']).call('getSystemState')
+    return sum(len(nodes) for topic, nodes in state[1]
+               if topic.startswith('/bot1/camera/rgb'))
+
+
+def test_that_the_mux_ends_on_purpose_is_said_again(lab):
+    """A radio may lose it, and a robot that goes back alone would go."""
+    import rospy
+    from std_msgs.msg import String
+    with subprocess.Popen([sys.executable, '-c', ENDINGS], env=lab.robot.env,
+                          stdout=subprocess.PIPE) as listener:
+        assert listener.stdout.readline() == b'listens\n'
+        mux = rospy.Publisher('/bot1/mhri_guard/heard', String, queue_size=1)
+        wait_for(mux.get_num_connections, LONG_S, 'the link')
+        mux.publish('')
+        wait_for(lambda: listener.poll() is not None, LONG_S, 'it to be heard three times')
+        mux.unregister()
+
+
+def test_presenters_with_names_that_are_made_up_lock_nobody_out_for_good(lab):
+    first = Hosts(lab, ['host:made_up_{}'.format(number) for number in range(20)])
+    wait_for(lambda: len(first.answered) >= 10, LONG_S, 'the robot to take them for hosts')
+    first.close()
+    other = Hosts(lab, ['host:newcomer'])
+    try:
+        wait_for(lambda: other.answered, LONG_S, 'a host that is new to be heard')
+    finally:
+        other.close()
+    lab.drive(lab.operator)
+    lab.let_stand(lab.operator)
+
+
+def test_a_second_computer_of_the_same_name_takes_nothing_over(lab):
+    lab.drive(lab.operator)
+    second = Hosts(lab, ['host:lab'])
+    try:
+        wait_for(lambda: second.sent >= 10, LONG_S, 'its beats')
+        lab.drive(lab.operator)
+        lab.let_stand(lab.operator)
+    finally:
+        second.close()
+
+
+class Hosts:
+    """Beats by several names; notes who is answered."""
+
+    def __init__(self, lab, names):
+        from mhri.link.carried import COMMAND
+        from mhri.link.ros.carrier import Carrier
+        self.answered, self.sent = set(), 0
+        self._carrier = Carrier(connect=[lab.endpoint])
+        self._ended = threading.Event()
+        self._senders = []
+        for name in names:
+            between = self._carrier.between('bot1', name)
+            between.listen('up', lambda *_, name=name: self.answered.add(name))
+            self._senders.append(between.sender('down', '_beat', COMMAND))
+        self._thread = threading.Thread(target=self._run, daemon=True)
+        self._thread.start()
+
+    def _run(self):
+        from mhri.link.frames import Beat, pack, pack_beat
+        from mhri.link.ros.clock import boot_clock
+        while not self._ended.wait(0.2):
+            for session, send in enumerate(self._senders):
+                send(pack(session, self.sent + 1, boot_clock(), pack_beat(Beat())))
+            self.sent += 1
+
+    def close(self):
+        self._ended.set()
+        self._thread.join()
+        self._carrier.close()
+
+
+def test_pictures_only_for_those_who_look(lab):
+    import rospy
+    from sensor_msgs.msg import CompressedImage
+    assert listeners_of_camera(lab) == 0
+    frames = []
+    view = rospy.Subscriber('/bot1/camera/rgb/image_raw/compressed', CompressedImage,
+                            lambda message: frames.append(message), queue_size=1,
+                            buff_size=1 << 22)
+    wait_for(lambda: len(frames) > 3, LONG_S, 'pictures')
+    assert frames[-1].header.frame_id.startswith('bot1/')
+    assert listeners_of_camera(lab) == 1
+    view.unregister()
+    wait_for(lambda: listeners_of_camera(lab) == 0, LONG_S, 'the camera to be left alone')
+
+
+@pytest.mark.parametrize('side', ['host', 'robot'])
+def test_what_a_side_that_hung_has_kept_is_not_obeyed(lab, side):
+    lab.drive(lab.operator)
+    process = lab.link_of_host if side == 'host' else lab.node_of_robot()
+    since = time.monotonic()
+    os.kill(process.pid, signal.SIGSTOP)
+    try:
+        at = wait_for(lambda: lab.stood_at(since), LONG_S, 'it to stand')
+        # From now on the mux sends zeros alone; what they said before is older than 0.3 s then.
+        wait_for(lambda: lab.row().stands, LONG_S, 'the mux to keep it standing')
+        time.sleep(0.4)
+    finally:
+        os.kill(process.pid, signal.SIGCONT)
+    wait_for(lab.witness.live, LONG_S, 'the odometry to be back')
+    # The stick was never let go.
+    time.sleep(1.0)
+    assert [row for row in lab.rows() if row[0] > at and abs(row[2]) > 0.02] == []
+    lab.drive(lab.operator)
+    lab.operator.stick.hold(0.0, 0.0)
+
+
+def test_a_stop_holds_on_the_robot_until_it_is_released(lab):
+    import rospy
+    from std_srvs.srv import SetBool
+    set_stop = rospy.ServiceProxy(graph.SET_STOP_ALL, SetBool)
+    lab.drive(lab.operator)
+    assert set_stop(True).success
+    wait_for(lambda: lab.row().stop_confirmed, LONG_S, 'the guard to confirm the stop')
+    wait_for(lambda: not lab.moves(), LONG_S, 'it to stand')
+    lab.operator.stick.hold(0.0, 0.0)
+    wait_for(lambda: set_stop(False).success, LONG_S, 'the stop to be released', 0.1)
+    wait_for(lambda: not lab.row().stop_confirmed, LONG_S, 'the guard to let go')
+    lab.drive(lab.operator)
+    lab.operator.stick.hold(0.0, 0.0)
+
+
+def test_the_link_says_how_good_it_is(lab):
+    import rospy
+    from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+    from mhri.robots.figures import read_figures
+    from std_msgs.msg import String
+    found = []
+
+    def on_diagnostics(message):
+        found.extend(({row.key: row.value for row in status.values}, status.level)
+                     for status in message.status if 'link to bot1' in status.name)
+    listener = rospy.Subscriber('/diagnostics', DiagnosticArray, on_diagnostics)
+    values, _ = wait_for(lambda: next((row for row in found[:] if row[1] == DiagnosticStatus.OK
+                                       and 'age of state [ms]' in row[0]), None), LONG_S,
+                         lambda: 'the figures of the link: {}'.format(found[-1:]))
+    listener.unregister()
+    figures = rospy.wait_for_message('/bot1/mhri_link/figures', String, LONG_S)
+    assert 0.0 <= read_figures(figures.data).round_trip
+    print('MEASURED link on this computer:', values)
+    assert 0.0 <= float(values['round trip [ms]'])

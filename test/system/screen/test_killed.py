@@ -1,0 +1,47 @@
+# SPDX-FileCopyrightText: 2026 The mhri authors
+# SPDX-License-Identifier: BSD-3-Clause
+"""A panel that is killed while a real key, pressed in the X server, drives two robots."""
+import contextlib
+import time
+
+import pytest
+
+from support.keyboard import xdotool
+from support.ros_system import System, wait_for
+from support.windows import windows_called
+
+pytestmark = pytest.mark.timed
+
+
+def test_the_robots_stand_still_within_600_ms():
+    import rospy
+    from support.robots import Witness, seconds_to_standstill
+    from support.rostest_tools import measured
+    with System() as system:
+        system.screen()
+        system.start_master()
+        rospy.init_node('killed_test', disable_signals=True)
+        system.node('mux', '__name:=mux')
+        robots = [Witness('bot1'), Witness('bot2')]
+        rospy.set_param('/bot1', {'robot_type': 'turtlebot2'})
+        rospy.set_param('/bot2', {'robot_type': 'turtlebot3', 'robot_model': 'burger'})
+        for robot in robots:
+            system.node('sim_robot', '__name:=base', '__ns:=/' + robot.name)
+        panel = system.node('panel', '--fresh', '--select', 'bot1 bot2')
+        window, = wait_for(lambda: windows_called('^mhri'), what='the window of the panel')
+
+        def press():
+            xdotool('windowfocus', '--sync', window, 'keydown', 'a')
+            with contextlib.suppress(AssertionError):
+                return wait_for(lambda: all(robot.moving() and robot.latest().angular_rad_s > 1.0
+                                            for robot in robots), 5.0)
+            xdotool('keyup', 'a')
+
+        wait_for(lambda: all(robot.live() for robot in robots), what='the robots')
+        # Let go, the key is left up until that has been read.
+        wait_for(press, what='the key to drive both robots', poll_s=0.5)
+        since = time.monotonic()
+        system.kill(panel, family=False)
+        for name, took in seconds_to_standstill(robots, since).items():
+            measured('panel killed while a key drives: {} stands'.format(name), took, 0.6)
+        rospy.signal_shutdown('done')
