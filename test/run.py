@@ -3,11 +3,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Run test files, each in a process of its own, on this machine only; print the count last.
 
-The exit status is 0 only if something ran and nothing failed. A file says by a mark what it needs
-(setup.cfg lists them): `pytestmark = pytest.mark.timed`, or `<!-- mark: timed -->` in a .test file.
+The exit status is 0 only if something ran and nothing failed. What failed in a run of everything
+runs again when the machine has come to rest, alone, and has to pass three times of three; what is
+pure does not. A file says by a mark what it needs (setup.cfg lists them): `pytestmark =
+pytest.mark.timed`, or `<!-- mark: timed -->` in a .test file.
 Results (JUnit) and what each file printed are in the folder of results.
 """
 import argparse
+import collections
 import contextlib
 import os
 from pathlib import Path
@@ -32,9 +35,18 @@ LIMIT_S, FULL_LIMIT_S, END_S = 1800, 7200, 10
 # Places of the timed lane, of a file of nodes and of one of pytest: two of nodes run at a time, or
 # one of each.
 TIMED, TIMED_NODE, TIMED_FILE = 5, 2, 3
+# Tests that are looked at again at most, how often each has to pass, and what they may take in all
+# [s]. Each time the machine rests first: processors are less busy than that over a while [%, s],
+# or it has been waited for long enough [s].
+LOOKS, TIMES, LOOKS_S, BUSY_PERCENT, REST_S, RESTLESS_S = 10, 3, 600, 15.0, 2.0, 60.0
 # What would let a test meet the operator's system, screen or files.
 FOREIGN = ('ROS_HOSTNAME', 'ROS_NAMESPACE', 'WAYLAND_DISPLAY', 'XAUTHORITY',
            'PYTHONDONTWRITEBYTECODE')
+
+
+# One test in a file of results: ``group`` is its module and class, '' where it never began;
+# ``problem`` is '' where it passed.
+Case = collections.namedtuple('Case', 'path group name problem skipped')
 
 
 class Job:
@@ -42,12 +54,13 @@ class Job:
 
     :param mark: timed, paired, modest or calm
     :param size: how many of its lane's places it takes
+    :param again: returns the job of one test, from (case, folder of results); None: none runs again
     """
 
-    def __init__(self, name, command, results, mark, size=1, limit_s=LIMIT_S):
+    def __init__(self, name, command, results, mark, size=1, limit_s=LIMIT_S, again=None):
         self.name, self.command, self.results = name, command, results
         self.mark, self.size, self.limit_s = mark, size, limit_s
-        self.log = results[0].with_suffix('.log')
+        self.log, self.again, self.failed = results[0].with_suffix('.log'), again, []
 
     def start(self, env, niceness):
         """Start it in a session of its own, to which the kernel gives its share by niceness.
@@ -77,19 +90,25 @@ class Job:
 
     def report(self):
         """Print how it went; return (passed, failed, skipped)."""
-        took_s, status = time.monotonic() - self._began, self._process.poll()
-        end_processes(self.id)
-        cases = [case for path in self.results for case in cases_of(path, self.name, status)]
-        failed = [case for case in cases if case[1]]
-        count = (sum(case[1:] == ('', False) for case in cases), len(failed),
-                 sum(case[2] for case in cases))
-        print('{} {:6.1f} s  {}: {}'.format('FAIL' if failed else '  ok', took_s, self.name,
+        took_s = time.monotonic() - self._began
+        cases = self.cases()
+        self.failed = [case for case in cases if case.problem]
+        count = (sum(not case.problem and not case.skipped for case in cases), len(self.failed),
+                 sum(case.skipped for case in cases))
+        print('{} {:6.1f} s  {}: {}'.format('FAIL' if self.failed else '  ok', took_s, self.name,
                                             words_of(count)), flush=True)
-        if failed:
+        if self.failed:
             print(self.log.read_text(errors='replace'))
-        for name, problem, _ in failed:
-            print('FAILED {}: {}: {}'.format(self.name, name, problem), flush=True)
+        for case in self.failed:
+            print('FAILED {}: {}.{}: {}'.format(self.name, case.group, case.name, case.problem),
+                  flush=True)
         return count
+
+    def cases(self):
+        """Return its tests once it has ended; what it has left behind is ended."""
+        status = self._process.poll()
+        end_processes(self.id)
+        return [case for path in self.results for case in cases_of(path, self.name, status)]
 
 
 def heed_signals():
@@ -99,7 +118,7 @@ def heed_signals():
 
 
 def cases_of(path, name, status):
-    """Return [(test, problem or '', whether it was skipped)] of a result file.
+    """Return the cases of a result file.
 
     One that is missing, torn or empty is one failure, and is replaced by one that says so.
     """
@@ -112,15 +131,15 @@ def cases_of(path, name, status):
         path.write_text('<testsuite name={0} tests="1" errors="1"><testcase classname="run" '
                         'name={0}><error message={1}/></testcase></testsuite>'.format(
                             quoteattr(name), quoteattr(problem)))
-        return [(path.name, problem, False)]
+        return [Case(path, '', path.name, problem, False)]
     found = []
     for case in cases:
         bad = case.findall('failure') + case.findall('error')
         text = ' '.join((bad[0].get('message') or bad[0].text or 'failed').split()) if bad else ''
-        found.append(('{}.{}'.format(case.get('classname', ''), case.get('name', '')), text[:300],
-                      not bad and case.find('skipped') is not None))
+        found.append(Case(path, case.get('classname', ''), case.get('name', ''), text[:300],
+                          not bad and case.find('skipped') is not None))
     # The frame around test nodes repeats their files: it counts if a node got no further.
-    return [case for case in found if case[1]] if path.name.startswith('rostest-') else found
+    return [case for case in found if case.problem] if path.name.startswith('rostest-') else found
 
 
 def words_of(count):
@@ -172,18 +191,38 @@ def jobs_of(path, results, full):
                     [results / 'pytest-oldest-{}.xml'.format(kind)], 'modest')
                 for kind in ('unit', 'widgets', 'link')]
     if path.suffix == '.test':
-        nodes = [test.get('test-name') for test in
-                 ElementTree.parse(str(path)).getroot().iter('test')]
-        return [Job(name, ['rostest', '--pkgdir', str(REPO), '--package', 'mhri',
-                           '--results-filename', name + '.xml', '--results-base-dir',
-                           str(results.parent), str(path)],
-                    [results / 'rostest-{}.xml'.format(name)] + [
-                        results / 'rosunit-{}.xml'.format(node) for node in nodes], mark_of(path),
-                    TIMED_NODE if mark_of(path) == 'timed' else 1)]
+        return [rostest_job(path, name, results)]
     if path == BENCH and full:
         return [pytest_job(name, results, 'timed', path, size=TIMED, limit_s=FULL_LIMIT_S)]
     mark = mark_of(path)
-    return [pytest_job(name, results, mark, path, size=TIMED_FILE if mark == 'timed' else 1)]
+    return [pytest_job(name, results, mark, path, size=TIMED_FILE if mark == 'timed' else 1,
+                       again=None if path == LINT else again_by_pytest)]
+
+
+def again_by_pytest(case, results):
+    """Return the job of one test of a file of pytest; None of what is no test."""
+    parts = case.group.split('.')
+    for count in range(1, len(parts) + 1):
+        path = '/'.join(parts[:count]) + '.py'
+        if (REPO / path).is_file():
+            return pytest_job('again', results, '', '::'.join([path, *parts[count:], case.name]))
+    return None
+
+
+def rostest_job(path, name, results, only=''):
+    """Return the job of a .test file, or of one test of its node by module, class and name."""
+    nodes = [test.get('test-name') for test in ElementTree.parse(str(path)).getroot().iter('test')]
+    command = ['rostest', '--pkgdir', str(REPO), '--package', 'mhri', '--results-filename',
+               name + '.xml', '--results-base-dir', str(results.parent), str(path)]
+
+    def again(case, folder):
+        """Return the job of one test of a node; None of what is no test."""
+        return rostest_job(path, name, folder, '{}.{}'.format(case.group, case.name)) \
+            if case.name.startswith('test') and case.path.name.startswith('rosunit-') else None
+    return Job(name, ['env', 'MHRI_TEST_ONLY=' + only] * bool(only) + command,
+               [results / 'rostest-{}.xml'.format(name)] + [
+                   results / 'rosunit-{}.xml'.format(node) for node in nodes], mark_of(path),
+               TIMED_NODE if mark_of(path) == 'timed' else 1, again=again)
 
 
 def files_in(paths):
@@ -229,7 +268,7 @@ class Lane:
         return not self.waiting and not self.running
 
     def step(self, env):
-        """Start what there is room for; return the counts of what has ended."""
+        """Start what there is room for; return the jobs that have ended."""
         ended = [job for job in self.running if job.has_ended()]
         self.running = [job for job in self.running if job not in ended]
         more = self.beside is not None and self.beside.is_over()
@@ -240,7 +279,7 @@ class Lane:
                 job.start(env, self.niceness)
                 self.running.append(job)
                 free -= job.size
-        return [job.report() for job in ended]
+        return ended
 
 
 def lanes_of(jobs, most, full):
@@ -284,7 +323,7 @@ def environment(scratch, arguments):
     return env
 
 
-def run(jobs, arguments):
+def run(jobs, results, arguments):
     """Run jobs; return the count."""
     scratch, screen, total = tempfile.mkdtemp(prefix='mhri.'), None, [0, 0, 0]
     env, lanes = environment(scratch, arguments), []
@@ -294,9 +333,12 @@ def run(jobs, arguments):
             screen, env['DISPLAY'] = start_xvfb()
         lanes = lanes_of(jobs, arguments.jobs, arguments.bench)
         while not all(lane.is_over() for lane in lanes):
-            for count in [count for lane in lanes for count in lane.step(env)]:
-                total = [one + more for one, more in zip(total, count)]
+            for job in [job for lane in lanes for job in lane.step(env)]:
+                total = [one + more for one, more in zip(total, job.report())]
             time.sleep(0.05)
+        if not arguments.paths:
+            sound = look_again(jobs, results, env)
+            total = [total[0] + len({case[:3] for case in sound}), total[1] - len(sound), total[2]]
     finally:
         for job in [job for lane in lanes for job in lane.running]:
             end_processes(job.id)
@@ -305,6 +347,76 @@ def run(jobs, arguments):
             screen.wait()
         shutil.rmtree(scratch, ignore_errors=True)
     return total
+
+
+def comes_to_rest():
+    """Wait until processors are next to idle; return whether they were in time."""
+    import psutil
+    until = time.monotonic() + RESTLESS_S
+    while psutil.cpu_percent(REST_S) >= BUSY_PERCENT:
+        if time.monotonic() > until:
+            return False
+    return True
+
+
+def passes_alone(job, case, folder, env, until):
+    """Return (how often a test that failed passed alone, one after the other; remarks)."""
+    remarks = []
+    for time_no in range(TIMES):
+        results = folder / str(time_no + 1) / 'mhri'
+        results.mkdir(parents=True)
+        alone = job.again(case, results)
+        if not comes_to_rest():
+            remarks.append('not idle')
+        alone.limit_s = until - time.monotonic()
+        if alone.limit_s <= 0.0:
+            return time_no, remarks + ['no time left']
+        alone.start(env, 0)
+        try:
+            while not alone.has_ended():
+                time.sleep(0.05)
+            cases = alone.cases()
+        finally:
+            end_processes(alone.id)
+        problems = [one.problem for one in cases if one.problem]
+        if problems or [(one.name, one.skipped) for one in cases] != [(case.name, False)]:
+            print(alone.log.read_text(errors='replace'))
+            return time_no, remarks + (problems or ['it alone did not run'])
+    return TIMES, remarks
+
+
+def look_again(jobs, results, env):
+    """Run the tests that failed alone; return the failures of those that passed each time."""
+    failed = {case[:3]: (job, case) for job in jobs if job.again for case in job.failed
+              if job.again(case, results)}
+    if len(failed) > LOOKS:
+        print('{} tests failed: more than {} are not looked at again'.format(len(failed), LOOKS))
+        return []
+    until, sound = time.monotonic() + LOOKS_S, []
+    for number, (job, case) in enumerate(failed.values()):
+        folder = results.parent / 'again' / str(number + 1)
+        count, remarks = passes_alone(job, case, folder, env, until)
+        print('AGAIN {}: {}.{}: passed {} of {}{}; at first: {}'.format(
+            job.name, case.group, case.name, count, TIMES,
+            ''.join(', ' + remark for remark in remarks), case.problem), flush=True)
+        if count == TIMES:
+            count_as_passed(case)
+            sound += [one for one in job.failed if one[:3] == case[:3]]
+    return sound
+
+
+def count_as_passed(case):
+    """Change a file of results, where what failed at first is kept."""
+    tree = ElementTree.parse(str(case.path))
+    for suite in tree.getroot().iter('testsuite'):
+        for test in suite.findall('testcase'):
+            if (test.get('classname', ''), test.get('name')) != case[1:3]:
+                continue
+            for kind in ('failure', 'error'):
+                for bad in test.findall(kind):
+                    bad.tag = 'system-out'
+                    suite.set(kind + 's', str(int(suite.get(kind + 's', '1')) - 1))
+    tree.write(str(case.path), encoding='utf-8', xml_declaration=True)
 
 
 def parse(words):
@@ -342,10 +454,11 @@ def main():
     if arguments.list:
         print('\n'.join('{:7} {}'.format(job.mark, job.name) for job in jobs))
         return 0
-    shutil.rmtree(str(results), ignore_errors=True)
+    for folder in (results, results.parent / 'again'):
+        shutil.rmtree(str(folder), ignore_errors=True)
     results.mkdir(parents=True)
     began = time.monotonic()
-    count = run(jobs, arguments)
+    count = run(jobs, results, arguments)
     # catkin waits for this file.
     (results / 'run.xml').write_text('<testsuite name="run" tests="1"><testcase classname="run" '
                                      'name="every file ran"/></testsuite>')

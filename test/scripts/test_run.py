@@ -14,6 +14,9 @@ import pytest
 from support.checkout import children_with, REPO
 from support.ros_system import wait_for
 
+# What it looks at again waits for a machine at rest.
+pytestmark = pytest.mark.timed
+
 PASSES, FAILS = 'def test_a():\n    pass\n', 'def test_b():\n    assert 1 == 2\n'
 CRASHES, STOPS = ('import os\n\n\ndef test_a():\n    os.{}\n'.format(how)
                   for how in ('abort()', '_exit(0)'))
@@ -27,6 +30,9 @@ import os
 import sys
 import unittest
 import rosunit
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..', '..'))
+import support
 
 
 class Case(unittest.TestCase):
@@ -62,7 +68,20 @@ def test_meeting():
 '''
 
 
+# Fails at these of its tries, which it counts in a file.
+UNSOUND = """import pathlib
+
+
+def test_unsound():
+    came = pathlib.Path(__file__).with_suffix('.came')
+    tries = int(came.read_text()) + 1 if came.exists() else 1
+    came.write_text(str(tries))
+    assert tries not in {}, 'try {{}}'.format(tries)
+"""
+
+
 JOB = re.compile(r'(FAIL|  ok) +[0-9.]+ s  (\S+): (.*)')
+AGAIN = re.compile(r'AGAIN (\S+): .*: passed (\d) of 3')
 
 
 class Package:
@@ -86,14 +105,27 @@ class Package:
         return self
 
     def start(self, *arguments, **env):
+        """Start it with a folder of tests: what fails there does not run again."""
+        return self.start_all(str(self.root / 'test'), *arguments, **env)
+
+    def start_all(self, *arguments, **env):
+        """Start it."""
         return subprocess.Popen(
             [sys.executable, str(self.root / 'test' / 'run.py'), '--results',
              str(self.results.parent), *arguments], stdout=subprocess.PIPE, encoding='utf-8',
             stderr=subprocess.STDOUT, env=dict(self.env, **env))
 
     def run(self, *arguments, **env):
+        """Return (exit status, lines) of the tests in its folder."""
+        return self.ends(self.start(*arguments, **env))
+
+    def run_all(self, *arguments, **env):
+        """Return (exit status, lines) of a run of everything."""
+        return self.ends(self.start_all(*arguments, **env))
+
+    @staticmethod
+    def ends(process):
         """Return (exit status, lines)."""
-        process = self.start(*arguments, **env)
         output = process.communicate(timeout=300)[0]
         print(output)
         return process.returncode, output.splitlines()
@@ -159,6 +191,39 @@ def test_what_failed_is_printed_and_all_is_kept(package):
     # Those of the last run do not count.
     (package.root / 'test/map/ros/test_b.py').unlink()
     assert package.run()[1][-1] == '1 passed, 0 failed'
+
+
+def test_what_failed_passes_three_times_of_three_alone_or_is_a_failure(package):
+    """The others of its file do not run again; a failure elsewhere changes nothing."""
+    status, lines = package.write({
+        'map/ros/test_once.py': UNSOUND.format({1}) + '\n\n' + PASSES,
+        'map/ros/test_twice.py': UNSOUND.format({1, 4}),
+        'system/map/once.test': ROSTEST.format('timed', 'once_node', ''),
+        'system/map/node.py': NODE.replace('exec(sys.argv[1])', 'test_unsound()').replace(
+            'import unittest', 'import unittest\n' + UNSOUND.format({1})),
+        'map/test_a.py': UNSOUND.format({1}), 'scripts/test_lint.py': FAILS}).run_all()
+    assert (lines[-1], status) == ('4 passed, 3 failed', 1)
+    again = dict(AGAIN.match(line).groups() for line in lines if line.startswith('AGAIN '))
+    assert again == {'map-ros-test_once': '3', 'map-ros-test_twice': '2', 'system-map-once': '3'}
+    for path, failures in (('pytest-map-ros-test_once.xml', 0), ('rosunit-once_node.xml', 0),
+                           ('pytest-map-ros-test_twice.xml', 1)):
+        root = ElementTree.parse(str(package.results / path)).getroot()
+        assert sum(int(suite.get('failures')) for suite in root.iter('testsuite')) == failures, path
+        # What it said at first is kept.
+        assert 'try 1' in ElementTree.tostring(root, 'unicode')
+
+
+MANY = '\n\n'.join('def test_{}():\n    assert False\n'.format(number) for number in range(11))
+
+
+@pytest.mark.parametrize('tests, count', [
+    ({'map/ros/test_a.py': MANY}, 11),
+    ({'map/test_a.py': FAILS, 'map/ros/test_b.py': CRASHES,
+      'map/ros/test_c.py': 'import no_such_module\n'}, 3)])
+def test_what_is_pure_crashes_or_fails_often_does_not_run_again(package, tests, count):
+    status, lines = package.write(tests).run_all()
+    assert (lines[-1], status) == ('0 passed, {} failed'.format(count), 1)
+    assert not [line for line in lines if line.startswith('AGAIN ')]
 
 
 def test_a_leftover_process_is_ended(package):

@@ -141,13 +141,15 @@ class DriveCase(unittest.TestCase):
 
     def wait_robot(self, name, good, what):
         """Wait until what is said of a robot is good; return it."""
-        return self.state.wait_robot(name, good, '{} of {}'.format(what, name))
+        return self.state.wait_robot(name, good, what)
 
     def select_anew(self, *names, besides=()):
         """Select robots after a selection without them, which is ``besides``."""
         self.operator.check(*besides)
-        for name in names:
-            self.wait_robot(name, lambda robot: not robot.selected, 'the end of the selection')
+        # One that has just started has selected nobody. Leased, it hears what this node says.
+        self.state.wait(lambda state: state.leased and state.operator == rospy.get_name()
+                        and not any(robot.selected and robot.name in names
+                                    for robot in state.robots), 'the end of the selection')
         self.operator.check(*names, *besides)
 
     def waits(self, name):

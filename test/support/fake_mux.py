@@ -95,9 +95,18 @@ class StateEar:
                                       if at >= since and good(message)), None), what=what)
 
     def wait(self, good, what, timeout_s=60.0):
-        """Wait until the state is good; return it."""
-        return wait_for(lambda: self.message is not None and good(self.message) and self.message,
-                        timeout_s, what)
+        """Wait for a state that comes from now on and is good; return it.
+
+        The newest one may be the last word of a drive that was killed.
+        """
+        asked = time.monotonic()
+
+        def found():
+            at, message = self._heard[-1] if self._heard else (asked, None)
+            return at > asked and good(message) and message
+        return wait_for(found, timeout_s, lambda: '{}; the last state is {:.1f} s old: {}'.format(
+            what() if callable(what) else what, time.monotonic() - (self.at or asked),
+            self.message))
 
     def robot(self, name):
         """Return what is said of one robot, or None."""
@@ -105,6 +114,8 @@ class StateEar:
                      if robot.name == name), None)
 
     def wait_robot(self, name, good, what, timeout_s=60.0):
-        """Wait until what is said of one robot is good; return it."""
-        return wait_for(lambda: self.robot(name) and good(self.robot(name)) and self.robot(name),
-                        timeout_s, lambda: '{}: {}'.format(what, self.robot(name)))
+        """Wait for a state that comes from now on with good news of one robot; return these."""
+        def of(state):
+            return next((robot for robot in state.robots if robot.name == name), None)
+        return of(self.wait(lambda state: of(state) and good(of(state)), '{} of {}'.format(
+            what, name), timeout_s))

@@ -5,6 +5,7 @@
 A robot is a subscriber of rospy as it is: it has neither guard nor watchdog.
 """
 import os
+import signal
 import threading
 import time
 
@@ -14,7 +15,7 @@ from sensor_msgs.msg import Joy
 from support import graph
 from support.fake_mux import FakeOperator, StateEar
 from support.journals import Journal
-from support.ros_system import children, wait_for
+from support.ros_system import children, freeze, wait_for
 from support.velocity import VelocityEnd
 
 
@@ -103,7 +104,10 @@ class World:
         """Send a signal to the moving drive; return (when, zeros of the robots, next drive [s])."""
         drive, run = self.drive(), self.state.message.run
         since = time.monotonic()
-        os.kill(drive, number)
+        if number == signal.SIGSTOP:
+            freeze(drive)
+        else:
+            os.kill(drive, number)
         zeros = self.zeros(since)
         self.next(run)
         return since, zeros, time.monotonic() - since

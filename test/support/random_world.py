@@ -19,7 +19,7 @@ from support import graph
 from support import machines
 from support.journals import Journal
 from support.reference_model import JOY, PAD, ReferenceModel
-from support.ros_system import children, node_words, System, tell, wait_for
+from support.ros_system import children, freeze, node_words, System, tell, wait_for
 
 HERE = Path(__file__).resolve().parent
 PROCESS = str(HERE / 'soak_process.py')
@@ -221,7 +221,7 @@ class World:
         pid = self._pid(key)
         if pid is None or not self.well(key):
             return False
-        os.kill(pid, signal.SIGSTOP)
+        freeze(pid)
         self.tell('fail', key, 'hung')
 
         def go_on():

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A slow network in one process: a TCP relay that delays every byte, and can stall.
+"""A slow network in one process: a TCP relay that delays every byte.
 
 A node behind it is registered at the master under the relay's address; the relay also rewrites the
 answer to ``requestTopic``, so that the streams come through it, too.
@@ -30,7 +30,6 @@ class Relay:
         self._rewrite = rewrite
         self._listener = socket.create_server(('127.0.0.1', 0))
         self.port = self._listener.getsockname()[1]
-        self._pairs = []
         threading.Thread(target=self._accept, daemon=True).start()
 
     def _accept(self):
@@ -40,7 +39,6 @@ class Relay:
                 far = socket.create_connection(self._target)
             except OSError:
                 return
-            self._pairs.append((near, far))
             for source, sink, rewrite in ((near, far, None), (far, near, self._rewrite)):
                 for one in (source, sink):
                     one.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
@@ -61,13 +59,6 @@ class Relay:
             if not data:
                 return
 
-    def close(self):
-        """End, with all connections."""
-        self._listener.close()
-        for pair in self._pairs:
-            for end in pair:
-                end.close()
-
 
 class Delay:
     """One clock for all lines of a network.
@@ -77,24 +68,10 @@ class Delay:
 
     def __init__(self, one_way_s=0.0):
         self.one_way_s = one_way_s
-        self._moving = threading.Event()
-        self._moving.set()
-
-    def stall(self):
-        """Hold everything back: nothing is lost, it all comes later."""
-        self._moving.clear()
-
-    def go_on(self):
-        """Let everything go that was held back."""
-        self._moving.set()
 
     def line(self, sink):
         """Return a line to a socket."""
         return _Line(self, sink)
-
-    def wait(self):
-        """Return when nothing is held back."""
-        self._moving.wait()
 
 
 class _Line:
@@ -127,7 +104,6 @@ class _Line:
                     self._changed.wait(left)
                     continue
                 heapq.heappop(self._queue)
-            self._delay.wait()
             try:
                 if not data:
                     self._sink.shutdown(socket.SHUT_WR)
@@ -164,18 +140,6 @@ class SlowNode:
             raise RuntimeError('a port with another number of digits: the length would be wrong')
         return data[:match.start(2)] + new + data[match.end(2):]
 
-    def close(self):
-        """End the network."""
-        for relay in (self._relay, *self._streams.values()):
-            relay.close()
-
-
-def put_in_front(slow, node, uri, topic, kind):
-    """Let everybody find a topic of a node behind the slow network only."""
-    master = rosgraph.Master(node)
-    master.unregisterPublisher(topic, uri)
-    rosgraph.Master('/slow' + topic.replace('/', '_')).registerPublisher(topic, kind, slow.uri)
-
 
 def move_away(delay, topic, kind, caller, patience_s=60.0):
     """Put the node that publishes a topic behind a network, once it is there."""
@@ -183,4 +147,6 @@ def move_away(delay, topic, kind, caller, patience_s=60.0):
     wait_for(lambda: topic in dict(master.getSystemState()[0]), patience_s, 'the robot')
     node = dict(master.getSystemState()[0])[topic][0]
     uri = master.lookupNode(node)
-    put_in_front(SlowNode(uri, delay), node, uri, topic, kind)
+    slow = SlowNode(uri, delay)
+    rosgraph.Master(node).unregisterPublisher(topic, uri)
+    rosgraph.Master('/slow' + topic.replace('/', '_')).registerPublisher(topic, kind, slow.uri)

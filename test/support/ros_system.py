@@ -125,6 +125,42 @@ def family_of(process):
         return []
 
 
+def freeze(*numbers):
+    """Stop processes by their numbers; return when they were told to [s, monotonic].
+
+    That is once every thread stands: each takes the signal by itself, and some go on for a moment.
+
+    :raises AssertionError: a thread goes on
+    """
+    when = time.monotonic()
+    for number in numbers:
+        os.kill(number, signal.SIGSTOP)
+    wait_for(lambda: {state for number in numbers for state in _thread_states(number)} <= set('Tt'),
+             what=lambda: 'all threads to stand: {}'.format(
+                 {number: _thread_states(number) for number in numbers}))
+    return when
+
+
+def thaw(*numbers):
+    """Let processes that were frozen go on; return when [s, monotonic]."""
+    when = time.monotonic()
+    for number in numbers:
+        os.kill(number, signal.SIGCONT)
+    return when
+
+
+def _thread_states(number):
+    """Return the states of a process's threads, a letter each as in proc(5)."""
+    found = []
+    for thread in os.listdir('/proc/{}/task'.format(number)):
+        # It may end meanwhile.
+        with contextlib.suppress(OSError), \
+                open('/proc/{}/task/{}/stat'.format(number, thread)) as stat:
+            # The name before it may have spaces and brackets in it.
+            found.append(stat.read().rpartition(')')[2].split()[0])
+    return found
+
+
 def tell(process, line):
     """Write a line to the standard input of a process."""
     process.stdin.write((line + '\n').encode())

@@ -137,21 +137,26 @@ class TasksCase(unittest.TestCase):
 
         Again where something came too late: on a busy machine that says nothing of the task.
         """
-        for tries_left in reversed(range(12)):
+        def in_time():
             ended = self.ends(self.start(robots, task, parameters))
-            if not (tries_left and TaskState.LOST in (state for state, _ in ended)):
+            if TaskState.LOST not in (state for state, _ in ended):
                 return ended
             print('again: {}'.format(ended))
+            return None
+        return wait_for(in_time, what='everything to come in time')
 
     def done(self, robots, task, parameters=''):
         """Do a task to its end, which has to be a good one; return the first sentence.
 
         Again where it failed: on a busy machine a pose may be late for longer than it may be.
         """
-        for _ in range(3):
-            ended = self.ended(robots, task, parameters)
-            if {state for state, _ in ended} == {TaskState.DONE}:
-                break
-            print('again: {}'.format(ended))
-        self.assertEqual([state for state, _ in ended], [TaskState.DONE] * len(ended), ended)
-        return ended[0][1]
+        tries = []
+
+        def is_done():
+            tries.append(self.ended(robots, task, parameters))
+            if {state for state, _ in tries[-1]} == {TaskState.DONE}:
+                return True
+            print('again: {}'.format(tries[-1]))
+            return False
+        wait_for(is_done, what=lambda: 'a good end, not {}'.format(tries))
+        return tries[-1][0][1]

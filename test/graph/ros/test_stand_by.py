@@ -15,7 +15,7 @@ import psutil
 import pytest
 
 from mhri.graph.ros import stand_by
-from support.ros_system import wait_for
+from support.ros_system import freeze, wait_for
 
 # Says its number and that of the one before; ends with 7 if SIGTERM asks it to, with 8 if SIGINT
 # does, with 0 if SIGHUP does. If it is to beat, it does so once, and hangs from then on.
@@ -102,9 +102,7 @@ def test_one_that_was_stopped_for_a_while_stands_by_as_before(start):
     process = start(hung_s=0.3, beat='undertaker.end()')
     first = here(process)
     parent = psutil.Process(process.pid)
-    parent.suspend()
-    begun = time.monotonic()
-    wait_for(lambda: parent.status() == psutil.STATUS_STOPPED, 60.0)
+    begun = freeze(parent.pid)
     # Longer than it waits between two looks at the beats.
     wait_for(lambda: time.monotonic() - begun > 0.3, 60.0)
     parent.resume()

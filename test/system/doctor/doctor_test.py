@@ -16,7 +16,7 @@ import rostest
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..', '..'))
 
 
-from support.ros_system import wait_for  # noqa: E402
+from support.ros_system import freeze, wait_for  # noqa: E402
 from support.surgery import BlackHole, Clinic, wrong  # noqa: E402
 
 TWIST, ODOMETRY, BOOL = 'geometry_msgs/Twist', 'nav_msgs/Odometry', 'std_msgs/Bool'
@@ -113,7 +113,7 @@ class DoctorTest(unittest.TestCase):
         self.clinic.register('/helper', '/helper/gone', self.clinic.master.lookupNode('/helper'))
         dead.kill()
         dead.wait()
-        hung.send_signal(signal.SIGSTOP)
+        freeze(hung.pid)
         self.found_of({
             ('node_dead', 'dead'): 'rosnode cleanup',
             ('node_silent', 'hung'): 'rosnode kill /hung/base',
@@ -163,7 +163,7 @@ class DoctorTest(unittest.TestCase):
         wait_for(lambda: wanted in self.clinic.topics(), 30.0, 'the relay')
         first = self.clinic.patient('/viewer', '--subscribe', wanted, ODOMETRY)
         self.found_links('/relay', ['/viewer'])
-        first.send_signal(signal.SIGSTOP)
+        freeze(first.pid)
         self.clinic.patient('/viewer', '--subscribe', wanted, ODOMETRY)
         self.found_links('/relay', ['/viewer'] * 2)
         item = self.found('name_twice', about='/viewer', remedy='__name:=')['name_twice']
@@ -179,7 +179,7 @@ class DoctorTest(unittest.TestCase):
     def hang(self, check, *arguments):
         """Let a stand-in hang; do what the remedy says, as the one who reads it: it has ended."""
         process = self.clinic.patient('/stand_in', *arguments)
-        process.send_signal(signal.SIGSTOP)
+        freeze(process.pid)
         item = self.found(check, remedy='pkill -KILL')[check]
         command = item['remedy'].partition(': ')[2].partition('#')[0]
         # What respawns a node has its name among its arguments, too, and must live.

@@ -13,7 +13,7 @@ import pytest
 
 from support import graph
 from support.journals import Journal
-from support.ros_system import System, wait_for
+from support.ros_system import freeze, System, wait_for
 
 pytestmark = pytest.mark.timed
 
@@ -100,8 +100,7 @@ def stand_after(bench, event, since, promised_s):
 def test_the_panel_hangs(bench):
     """The pad goes on, but nobody could see or stop anything on the screen: its lease runs out."""
     bench.drive()
-    since = time.monotonic()
-    bench.panel.send_signal(signal.SIGSTOP)
+    since = freeze(bench.panel.pid)
     try:
         stand_after(bench, 'panel hung (SIGSTOP)', since, 1.6)
     finally:

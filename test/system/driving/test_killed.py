@@ -18,7 +18,7 @@ import pytest
 
 from support import graph
 from support.paths import GUARD
-from support.ros_system import child_processes, System, wait_for
+from support.ros_system import child_processes, freeze, System, thaw, wait_for
 
 pytestmark = pytest.mark.timed
 
@@ -81,8 +81,7 @@ def test_every_robot_has_its_zero_within_600_ms_of_a_hang(world):
 
 def test_robots_stand_and_it_is_said_while_the_undertaker_hangs(world):
     world.drive()
-    since = time.monotonic()
-    world.mux.send_signal(signal.SIGSTOP)
+    since = freeze(world.mux.pid)
     said = world.state.said(lambda state: state.waits_for == 'undertaker', 'it', since) - since
     zeros = world.zeros(since)
     world.stays(since, since + 2.5)
@@ -176,13 +175,9 @@ def test_one_that_was_ended_by_rosnode_kill_is_followed_by_another(world):
 def test_where_both_were_asleep_nothing_of_before_moves(world):
     """As a computer that is suspended; robots without guard or watchdog drive on meanwhile."""
     both = world.drive(), world.mux.pid
-    for number in both:
-        os.kill(number, signal.SIGSTOP)
-    since = time.monotonic()
+    since = freeze(*both)
     wait_for(lambda: time.monotonic() > since + 3.0, what='a while')
-    woken = time.monotonic()
-    for number in both:
-        os.kill(number, signal.SIGCONT)
+    woken = thaw(*both)
     told('both asleep for 3 s, woken', world.zeros(woken))
     world.stays(woken, woken + 1.5)
     for robot in world.robots:
@@ -253,7 +248,7 @@ def test_killed_twice_within_two_seconds_nothing_is_forgotten(world):
 
 def test_the_master_need_not_answer(world):
     drive, run = world.drive(), world.state.message.run
-    world.system.master.send_signal(signal.SIGSTOP)
+    freeze(world.system.master.pid)
     since = time.monotonic()
     try:
         os.kill(drive, signal.SIGKILL)

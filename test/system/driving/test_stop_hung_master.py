@@ -12,7 +12,7 @@ import pytest
 import rosgraph
 
 from support import graph
-from support.ros_system import System, wait_for
+from support.ros_system import freeze, System, wait_for
 
 pytestmark = pytest.mark.timed
 
@@ -70,7 +70,7 @@ class Desk:
     def mux_replaced(self):
         """The older one hangs, and holds on to what is connected to it."""
         older = self.panel.state().run
-        self.mux.send_signal(signal.SIGSTOP)
+        freeze(self.mux.pid)
         self.system.node('mux', '__name:=other_mux')
         wait_for(lambda: self.panel.state().run != older, what='the other mux')
         self._wait_mux()
@@ -100,7 +100,7 @@ def test_stop_needs_no_master(desk, happened):
     if happened != 'nothing':
         getattr(desk, happened)()
     for who, press in desk.press.items():
-        desk.system.master.send_signal(signal.SIGSTOP)
+        freeze(desk.system.master.pid)
         try:
             desk.stops.clear()
             desk.answers.clear()

@@ -1,8 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """A robot on a master of its own, linked to the host: driven, looked at, and whatever dies."""
-import os
-import signal
 import subprocess
 import sys
 import threading
@@ -12,7 +10,7 @@ import pytest
 
 from support import graph
 from support.linked import Linked, LONG_S, Operator
-from support.ros_system import wait_for
+from support.ros_system import freeze, thaw, wait_for
 
 pytestmark = pytest.mark.paired
 
@@ -154,15 +152,14 @@ def test_pictures_only_for_those_who_look(lab):
 def test_what_a_side_that_hung_has_kept_is_not_obeyed(lab, side):
     lab.drive(lab.operator)
     process = lab.link_of_host if side == 'host' else lab.node_of_robot()
-    since = time.monotonic()
-    os.kill(process.pid, signal.SIGSTOP)
+    since = freeze(process.pid)
     try:
         at = wait_for(lambda: lab.stood_at(since), LONG_S, 'it to stand')
         # From now on the mux sends zeros alone; what they said before is older than 0.3 s then.
         wait_for(lambda: lab.row().stands, LONG_S, 'the mux to keep it standing')
         time.sleep(0.4)
     finally:
-        os.kill(process.pid, signal.SIGCONT)
+        thaw(process.pid)
     wait_for(lab.witness.live, LONG_S, 'the odometry to be back')
     # The stick was never let go.
     time.sleep(1.0)

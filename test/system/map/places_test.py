@@ -107,17 +107,16 @@ class WherePlaced(unittest.TestCase):
 
         Again where something came too late: on a busy machine that says nothing of the task.
         """
-        for _ in range(12):
+        def in_time():
             for name in ('bot1', 'bot2', 'bot3'):
                 self.state.wait_robot(name, lambda gate: gate.topic and not gate.obeys
                                       and not gate.stands, 'the gate of ' + name, TIMEOUT_S)
             goal = self.client.send_goal(RunTaskGoal(task, [robot], parameters))
-            wait_for(lambda one=goal: one.get_comm_state() == actionlib.CommState.DONE,
+            wait_for(lambda: goal.get_comm_state() == actionlib.CommState.DONE,
                      what='the task goes on', timeout_s=120.0)
             ended = goal.get_result().robots[0]
-            if ended.state != TaskState.LOST:
-                break
-        return ended.state, ended.text
+            return ended.state != TaskState.LOST and (ended.state, ended.text)
+        return wait_for(in_time, what='everything to come in time')
 
     def put(self, name, x, y, theta=0.0):
         """Place a robot by hand once its odometry is heard."""

@@ -21,7 +21,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..
 from support import graph  # noqa: E402
 from support.rostest_tools import (  # noqa: E402
     measured, moves, Recorder, rests, start_mux, state_recorder, Stick, TIMEOUT_S, twist_recorder)
-from support.ros_system import children, wait_for  # noqa: E402
+from support.ros_system import children, freeze, thaw, wait_for  # noqa: E402
 
 SERVICE = graph.SET_STOP_ALL
 # Commands are 50 ms apart: none for so long, and none comes any more [s].
@@ -72,13 +72,9 @@ class MuxEnd(unittest.TestCase):
         return mux
 
     @staticmethod
-    def _send_both(mux, number):
-        """Send a signal to the process that stands by and to the mux; return the time of it."""
-        works = children(mux.number)
-        when = mux.send(number)
-        for process in works:
-            os.kill(process, number)
-        return when
+    def _both(mux):
+        """Return the numbers of the process that stands by and of the mux."""
+        return [mux.number, *children(mux.number)]
 
     def _drive(self):
         self.stick.set_out(self.waits, self.twists)
@@ -162,13 +158,14 @@ class MuxEnd(unittest.TestCase):
             with self.subTest(name):
                 older = self._start_settled()
                 self._drive()
-                self._send_both(older, signal.SIGSTOP)
+                both = self._both(older)
+                freeze(*both)
                 # What it said before that may still be on its way.
                 self.twists.wait_silence(SILENCE_S)
                 begun = time.monotonic()
                 newer = self._start('__name:=' + name)
                 self.twists.wait_silence(SILENCE_S)
-                woken = self._send_both(older, signal.SIGCONT)
+                woken = thaw(*both)
                 older.wait()
                 measured('hung mux gone after', time.monotonic() - woken)
                 self.assertFalse([item for item in self.twists.since(begun) if moves(item.value)])

@@ -24,7 +24,7 @@ from support import graph  # noqa: E402
 from support.rostest_tools import (  # noqa: E402
     measured, moves, NEUTRAL, Process, rests, start_mux, state_recorder, Stick,
     TIMEOUT_S, twist_recorder)
-from support.ros_system import free_port, wait_for  # noqa: E402
+from support.ros_system import free_port, freeze, thaw, wait_for  # noqa: E402
 
 PORT = free_port()
 # Commands are 50 ms apart: none for so long, and none comes any more [s].
@@ -133,12 +133,12 @@ class MuxMaster(unittest.TestCase):
         """It takes calls and never answers; what it forgot, nobody knows."""
         self._release()
         self._drive()
-        hung = self.master.send(signal.SIGSTOP)
+        hung = freeze(self.master.number)
         try:
             zero = self.twists.wait(rests, hung)
             measured('first zero after the master hung', zero.at - hung, 1.5)
         finally:
-            self.master.send(signal.SIGCONT)
+            thaw(self.master.number)
         self.twists.wait_silence(SILENCE_S)
         self._drive()
 
@@ -146,14 +146,14 @@ class MuxMaster(unittest.TestCase):
         """The zeros of its end do not wait for anybody: 20 Hz for half a second, then silence."""
         self._release()
         self._drive()
-        self.master.send(signal.SIGSTOP)
+        freeze(self.master.number)
         try:
             begun = self.mux.send(signal.SIGTERM)
             first = self.twists.wait(rests, begun)
             self.twists.wait_zeros(first)
             self.mux.wait()
         finally:
-            self.master.send(signal.SIGCONT)
+            thaw(self.master.number)
         self._start_mux()
         measured('first zero of an end while the master hangs', first.at - begun, 0.05)
 

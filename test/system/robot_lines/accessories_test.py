@@ -29,7 +29,7 @@ from mhri.msg import Accessory, ControlMode  # noqa: E402
 from support import graph  # noqa: E402
 from support.drive_case import DriveCase  # noqa: E402
 from support.joy_tools import JoyNode, NO_PADS  # noqa: E402
-from support.ros_system import wait_for  # noqa: E402
+from support.ros_system import freeze, wait_for  # noqa: E402
 from support.rostest_tools import measured  # noqa: E402
 
 ROWS = {
@@ -291,7 +291,7 @@ class AccessoriesTest(DriveCase):
                           if when > at and value], [])
         self.assertEqual(self.accessories()['flipper'].stands, 'not_selected')
 
-    def after(self, what, sign, within_s):
+    def after(self, what, hit, within_s):
         """Hit the drive while the flipper moves; the process that stands by ends the motion."""
         self.tools.head.publish(0.1, 0.2, 0.0)
         wait_for(lambda: self.accessories()['head'].known, what='the place of the head')
@@ -301,7 +301,7 @@ class AccessoriesTest(DriveCase):
         wait_for(lambda: self.tools.last('fan') == 1.0, what='the fan')
         drive, run = wait_for(self.worker, what='the drive'), self.state.message.run
         when = time.monotonic()
-        os.kill(drive, sign)
+        hit(drive)
         self.ends(what, when, within_s)
         self.ends(what, when, within_s, 'head', lambda place: place == (0.1, 0.2))
         self.ends(what, when, within_s, 'fan')
@@ -313,10 +313,10 @@ class AccessoriesTest(DriveCase):
         self.assertEqual(self.tools.last('flipper'), 0.0)
 
     def test_it_ends_when_the_drive_is_killed(self):
-        self.after('drive killed', signal.SIGKILL, KILLED_S)
+        self.after('drive killed', lambda drive: os.kill(drive, signal.SIGKILL), KILLED_S)
 
     def test_it_ends_when_the_drive_hangs(self):
-        self.after('drive hung', signal.SIGSTOP, HUNG_S)
+        self.after('drive hung', freeze, HUNG_S)
 
     def test_what_is_not_installed_or_refused_is_said(self):
         found = self.accessories()

@@ -25,7 +25,7 @@ from support import graph  # noqa: E402
 from support.deaf_robot import DeafRobot  # noqa: E402
 from support.drive_case import DriveCase, ZERO  # noqa: E402
 from support.paths import SUPPORT  # noqa: E402
-from support.ros_system import wait_for  # noqa: E402
+from support.ros_system import freeze, thaw, wait_for  # noqa: E402
 from support.rostest_tools import measured, Process  # noqa: E402
 from support.velocity import VelocityEnd  # noqa: E402
 
@@ -292,13 +292,13 @@ class DriveTest(DriveCase):
     def select_twice_at_once(self, *wishes):
         """Send selections that the drive finds in its socket together."""
         drive = self.worker()
-        os.kill(drive, signal.SIGSTOP)
+        freeze(drive)
         try:
             for names in wishes:
                 self.operator.check(*names)
             rospy.rostime.wallsleep(0.1)
         finally:
-            os.kill(drive, signal.SIGCONT)
+            thaw(drive)
 
     def test_a_robot_left_out_and_named_again_at_once_is_selected_anew(self):
         (one, one_end), (other, other_end), first = self.stopped_alone()

@@ -18,7 +18,7 @@ from support.drive_tools import HallCase  # noqa: E402
 from support.drive_case import ZERO  # noqa: E402
 from mhri.msg import RobotDrive  # noqa: E402
 from support.rostest_tools import measured, Process  # noqa: E402
-from support.ros_system import wait_for  # noqa: E402
+from support.ros_system import freeze, thaw, wait_for  # noqa: E402
 from support.velocity import VelocityEnd  # noqa: E402
 
 AFTER_S = 2.0
@@ -86,14 +86,8 @@ class GuardLook(HallCase):
     def test_it_goes_back_while_it_is_not_heard_and_stops_when_it_is(self):
         lost = self.far_robot()
         numbers = self.drive_process.number, self.worker()
-
-        def send(sign):
-            when = time.monotonic()
-            for number in numbers:
-                os.kill(number, sign)
-            return when
-        when = send(signal.SIGSTOP)
-        self.addCleanup(send, signal.SIGCONT)
+        when = freeze(*numbers)
+        self.addCleanup(thaw, *numbers)
         wait_for(lambda: ZERO in [entry[1:] for entry in self.end.after(when)],
                  what='the end of the lease')
         self.hall.places.wait(lambda x: x > lost + 0.2, when)
@@ -102,7 +96,7 @@ class GuardLook(HallCase):
         # It was heard half a second before at most.
         self.assertGreater(measured('not heard: the way back begins', moved[0] - when),
                            AFTER_S - 0.6)
-        heard = send(signal.SIGCONT)
+        heard = thaw(*numbers)
         wait_for(lambda: time.monotonic() > heard + HEARD_WITHIN_S, what='some time')
         # A zero may be older than that: the way back waits where a scan is late.
         moved = [entry[0] for entry in self.end.after(heard) if entry[1:] != ZERO]

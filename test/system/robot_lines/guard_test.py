@@ -21,7 +21,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..
 from support.paths import GUARD, SUPPORT  # noqa: E402
 from mhri.driving.guard_link import GuardLink  # noqa: E402
 from support.rostest_tools import measured  # noqa: E402
-from support.ros_system import wait_for  # noqa: E402
+from support.ros_system import freeze, thaw, wait_for  # noqa: E402
 from support.velocity import VelocityEnd  # noqa: E402
 
 OTHER = str(SUPPORT / 'other_driver.py')
@@ -176,13 +176,10 @@ class GuardTest(unittest.TestCase):
 
     def stalled(self, driver, seconds, words):
         """Have what is said stand in the guard's socket, and come all at once."""
-        driver.process.send_signal(signal.SIGSTOP)
-        begun = time.monotonic()
+        begun = freeze(driver.process.pid)
         said = [driver.say(*word) for word in words]
         wait_for(lambda: time.monotonic() > begun + seconds, 60.0, 'the stall to end')
-        since = time.monotonic()
-        driver.process.send_signal(signal.SIGCONT)
-        return since, said
+        return thaw(driver.process.pid), said
 
     def test_a_stop_in_a_backlog_is_found(self):
         """The link comes back so soon that what stands behind the stop is still young."""

@@ -16,23 +16,23 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..
 
 
 from mhri.srv import StopRobots  # noqa: E402
-from support.drive_case import DriveCase, ZERO  # noqa: E402
-from support.paths import GUARD  # noqa: E402
-from support.relay import Delay, put_in_front, SlowNode  # noqa: E402
-from support.ros_system import wait_for  # noqa: E402
-from support.rostest_tools import measured, Process  # noqa: E402
+from support.drive_case import DriveCase  # noqa: E402
+from support.paths import GUARD, SUPPORT  # noqa: E402
+from support.ros_system import freeze, thaw, wait_for  # noqa: E402
+from support.rostest_tools import Process  # noqa: E402
+from support.velocity import VelocityEnd  # noqa: E402
 
-# Longer than a guard obeys what was said: a second [s].
-STALL_S = 1.5
+# Of the guard [s]. A stall is longer than it obeys what was said: a second.
+LEASE_S, STALL_S = 0.3, 1.5
 
 
 class GuardedTest(DriveCase):
     """What the robot does by itself."""
 
-    def guard(self, name, *options):
-        """Start the guard of a robot; return it once it is used."""
-        guard = Process([sys.executable, GUARD, '_command:=cmd_vel', *options],
-                        env={'ROS_NAMESPACE': name})
+    def guard(self, name, namespace=None):
+        """Start the guard of a robot, in its namespace or another; return it once it is used."""
+        guard = Process([sys.executable, GUARD, '_command:=cmd_vel'],
+                        env={'ROS_NAMESPACE': namespace or name})
         self.addCleanup(guard.end)
         self.wait_robot(name, lambda robot: robot.guarded, 'the guard')
         return guard
@@ -97,71 +97,47 @@ class GuardedTest(DriveCase):
         self.ready(name, other)
         self.assertEqual(self.drive(receiver, 0.125), (0.125, 0.0))
 
-    def behind_a_network(self, node, delay, topic, kind):
-        """Let everybody find a topic of a node behind a slow network only."""
-        uri = rosgraph.Master(rospy.get_name()).lookupNode(node)
-        slow = SlowNode(uri, delay)
-        self.addCleanup(slow.close)
-        put_in_front(slow, node, uri, topic, kind)
+    def behind_a_network(self):
+        """Return (name, receiving end, what its guard has dropped, network) of a robot to drive."""
+        (name, _), = self.robots(1)
+        far, dropped = '/behind/' + name, []
+        receiver = VelocityEnd(far + '/cmd_vel')
+        ear = rospy.Subscriber(far + '/mhri_guard/dropped', TwistStamped, lambda message: dropped.
+                               append((time.monotonic(), message.twist.linear.x)))
+        self.addCleanup(ear.unregister)
+        network = Process([sys.executable, str(SUPPORT / 'topic_relay.py'), far],
+                          env={'ROS_NAMESPACE': name})
+        self.addCleanup(network.end)
+        self.guard(name, namespace=far)
+        wait_for(ear.get_num_connections, what='its guard')
+        self.ready(name)
+        return name, receiver, dropped, network.number
 
-    def motion_s(self, receiver, since):
-        """Return for how long the robot has moved since a time [s]."""
-        told = receiver.after(since) + [(time.monotonic(), 0.0, 0.0)]
-        return sum(after[0] - before[0] for before, after in zip(told, told[1:])
-                   if before[1:] != ZERO)
+    def is_the_only_way(self, name):
+        """See that nobody but the network speaks to the guard, nor hears what is meant for it."""
+        published, subscribed, _ = map(dict, rosgraph.Master(rospy.get_name()).getSystemState())
+        node = '/{}/mhri_guard'.format(name)
+        self.assertEqual(published['/behind{}/command'.format(node)], [node])
+        self.assertEqual(subscribed[node + '/command'], [node])
 
     def test_no_backlog_moves_a_guarded_robot(self):
-        """The link is stalled with the stick held.
-
-        rospy may have found its way around the network just then: it holds up nothing, and another
-        robot is put behind it.
-        """
-        for _ in range(3):
-            moved_s = self.stalled_once()
-            if moved_s is not None:
-                self.assertEqual(moved_s, 0.0)
-                return
-        self.fail('a guarded robot that was cut off got no zero')
-
-    def stalled_once(self):
-        """Do so once; return for how long the robot moved, None where it was not told to stand."""
-        delay = Delay()
-        (name, receiver), = self.robots(1)
-        self.behind_a_network('/mux', delay, '/{}/mhri_guard/command'.format(name),
-                              'geometry_msgs/TwistStamped')
-        self.guard(name)
-        self.behind_a_network('/{}/mhri_guard'.format(name), delay,
-                              '/{}/mhri_guard/echo'.format(name), 'geometry_msgs/TwistStamped')
-        self.wait_robot(name, lambda robot: robot.guarded, 'the guard behind the network')
-
-        def goes():
-            """On a busy computer a robot that was not heard for a moment asks for neutral again.
-
-            Be quick: a second after it was cut off, rospy finds its way around the network.
-            """
-            self.operator.centre()
-            rospy.rostime.wallsleep(0.1)
-            self.operator.push(0.25)
-            rospy.rostime.wallsleep(0.3)
-            return receiver.moves()
-        wait_for(goes, what='it to go')
-        delay.stall()
-        stalled = time.monotonic()
-        rospy.rostime.wallsleep(STALL_S)
-        zeros = [at for at, *value in receiver.after(stalled) if tuple(value) == ZERO]
-        self.operator.centre()
-        if not zeros:
-            delay.go_on()
-            return None
-        measured('link stalled: the guard says zero', zeros[0] - stalled)
-        back = time.monotonic()
-        delay.go_on()
-        rospy.rostime.wallsleep(1.0)
-        moved_s = measured('link stalled for {} s: the guarded robot moves afterwards for'.format(
-            STALL_S), self.motion_s(receiver, back))
+        """The link stalls with the stick held; what it has held back comes all at once."""
+        name, receiver, dropped, network = self.behind_a_network()
+        self.is_the_only_way(name)
+        self.drive(receiver, 0.25)
+        stalled = freeze(network)
+        first = self.first_zero('link stalled: by the guard', receiver, stalled, LEASE_S)
+        wait_for(lambda: time.monotonic() > stalled + STALL_S, what='a while')
+        back = thaw(network)
+        wait_for(lambda: [at for at, mps in list(dropped) if at > back and mps],
+                 what='what was held back')
+        self.waits(name)
+        self.stays_at_rest(receiver, first, seconds=1.0)
+        self.is_the_only_way(name)
+        print('MEASURED link stalled for {} s: {} commands came late, none was obeyed'.format(
+            STALL_S, len([at for at, mps in dropped if at > back and mps])))
         self.ready(name)
         self.assertEqual(self.drive(receiver, 0.25), (0.25, 0.0))
-        return moved_s
 
     def test_a_stranger_at_the_guard_is_said_and_shut_out_again(self):
         name, receiver, _ = self.guarded()
