@@ -58,6 +58,17 @@ def test_a_limit_that_rises_counts_at_once_for_a_robot_that_was_not_driven():
     assert rig.drive.stop_reason('bot1') == ''
 
 
+def test_a_limit_that_falls_is_kept_at_once_also_where_the_stick_is_let_go_just_then():
+    rig = driving('bot1')
+    rig.run(0.1)
+    for limit_mps in (0.3, 0.5):
+        rig.note(rig.drive.open('bot1', Limits(limit_mps, 1.0), rig.now))
+        rig.stick(NEUTRAL)
+    assert rig.drive.stop_reason('bot1') == 'limit_raised'
+    rig.stick(FORWARD)
+    assert rig.sent['bot1'].linear_mps == 0.3
+
+
 @pytest.mark.parametrize('who', [A, B])
 def test_a_limit_that_rises_counts_once_the_robot_is_selected_anew(who):
     rig = driving('bot1')

@@ -351,6 +351,7 @@ class Drive:
         self._rules[name] = RobotRule(limits, self._command, brake)
         self.accessories.open(name, accessories, now)
         self._type_limits[name] = limits
+        self._driven.lower(name, limits)
         self._apply(now)
         return self._done()
 

@@ -26,6 +26,11 @@ class DrivenLimits:
         """Store the limits of a robot that the operator drives."""
         self._held[name] = self.of(name, limits)
 
+    def lower(self, name: str, limits: Limits) -> None:
+        """Handle new limits of a robot: one that was driven keeps lower ones from now on."""
+        if name in self._held:
+            self.note(name, limits)
+
     def select(self, names: Collection[str]) -> None:
         """Handle the operator's selection; the limits of all other robots are dropped."""
         self._held = {name: held for name, held in self._held.items() if name in names}

@@ -54,7 +54,8 @@ class MuxEnd(unittest.TestCase):
         self.stick.silence()
         for mux in self.muxes:
             if mux.running():
-                self._send_both(mux, signal.SIGKILL)
+                for number in self._both(mux):
+                    os.kill(number, signal.SIGKILL)
             mux.end()
         for recorder in (self.twists, self.stops, self.waits):
             recorder.close()
