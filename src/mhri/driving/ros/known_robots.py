@@ -9,12 +9,11 @@ import rospy
 
 from mhri.base.names import DRIVEN, names_in, ROBOTS
 from mhri.driving.operator_lease import MAX_ROBOTS
+from mhri.graph.ros.announcer import Announcer
 from mhri.graph.ros.master_api import MasterApi, MasterError
 from mhri.robots.ros.registry import RobotRegistry
 
 PERIOD_S = 1.0
-# How often topics without a subscriber are announced again to a robot that is present [s].
-ANNOUNCE_S = 5.0
 # How long to redetermine the type of a robot that publishes its own velocity [s].
 AGAIN_S = 5.0
 
@@ -34,7 +33,7 @@ class KnownRobots:
     :param on_publishers: called with a name and {(caller id, topic)}, on the thread
     :param insiders: returns {name: frozenset of the robot's own nodes that publish its velocity} of
         robots that are driven as generic
-    :param unheard: returns a list of (topic, type) that present robots should subscribe but do not
+    :param unheard: see :class:`mhri.graph.ros.announcer.Announcer`; of robots that are present
     :param memory: :class:`mhri.graph.ros.stand_by.Memory` of the previous drive
     """
 
@@ -43,13 +42,12 @@ class KnownRobots:
         self._registry = RobotRegistry(types)
         self._open_line = open_line
         self._close_line = close_line
-        self._unheard = unheard
+        self._announcer = Announcer(unheard)
         self._memory = memory
         self._watched = watched
         self._on_publishers = on_publishers
         self._insiders = insiders
         self._inside = {}
-        self._announced_at = 0.0
         self._checked = frozenset()
         self._ever = {}
         self._recalled = False
@@ -80,7 +78,7 @@ class KnownRobots:
             self._changed.clear()
             try:
                 self._look()
-                self._announce(time.monotonic())
+                self._announcer.announce()
             except (MasterError, OSError) as error:
                 rospy.logdebug('cannot look at the robots now: %s', error)
             except Exception as error:  # without this thread no robot would ever be added
@@ -145,19 +143,3 @@ class KnownRobots:
             self._on_publishers(name, {
                 (node, topic) for topic, nodes in published
                 if topic in topics or topic.startswith(prefixes) for node in nodes})
-
-    def _announce(self, now):
-        """Register the topics again that robots should subscribe but do not.
-
-        The master announces a new publisher only once: a robot that hung or was out of reach at
-        that moment would never connect.
-
-        :raises MasterError: the master does not answer
-        """
-        if now - self._announced_at < ANNOUNCE_S:
-            return
-        self._announced_at = now
-        own = rospy.get_node_uri()
-        calls = [('registerPublisher', topic, kind, own) for topic, kind in self._unheard()]
-        if calls:
-            MasterApi(rospy.get_name(), timeout_s=2.0).call_many(calls)

@@ -21,9 +21,10 @@ import uuid
 from actionlib_msgs.msg import GoalID, GoalStatus, GoalStatusArray
 import rospy
 
+from mhri.graph.ros.announcer import Announcer
 from mhri.graph.ros.master_api import MasterApi
 from mhri.graph.ros.non_blocking import NonBlockingPublisher
-from mhri.graph.ros.rospy_inside import unsubscribe
+from mhri.graph.ros.rospy_inside import listeners, unsubscribe
 from mhri.robots.ros.convert import turn_of
 from mhri.robots.ros.own_navigation import CANCEL, GOAL, MoveBaseActionGoal, PREFIX
 from mhri.tasks.base import BLOCKED, DONE, FAILED, LOST, RUNNING, TAKEN_OVER
@@ -87,10 +88,18 @@ class MoveBase(Errand):
 
     def is_ready(self):
         """Return whether it is connected in both directions, and the mux is connected."""
-        mux = self._mux()
-        others = any(link.endpoint_id != mux for link in self._goal.links())
-        return (self._clock() - self._heard_at < SILENT_S and others
-                and self._watch() is not None and bool(self._cancel.links()))
+        return self.is_heard() and self._watch() is not None and not self.unheard()
+
+    def is_heard(self):
+        """Return whether its status arrives."""
+        return self._clock() - self._heard_at < SILENT_S
+
+    def unheard(self):
+        """Return (topic, type) of each topic that it should subscribe but does not."""
+        mux = {self._mux()}
+        return [(publisher.resolved_name, publisher.type)
+                for publisher in (self._goal, self._cancel)
+                if not listeners(publisher.links()) - mux]
 
     def _watch(self):
         """Return the newest connection to the active mux, or None."""
@@ -149,9 +158,14 @@ class MoveBases:
         self._mux = mux
         self._clock = clock
         self._robots = {}
+        self._announcer = Announcer(lambda: [
+            topic for robot in self._robots.values() if robot.is_heard()
+            for topic in robot.unheard()], clock)
 
     def update(self, names):
         """Update which of these robots have one, and drop the others (blocking).
+
+        One that is there but does not listen is called again.
 
         :raises MasterError: the master is unavailable
         """
@@ -165,6 +179,7 @@ class MoveBases:
         for name in there - set(self._robots):
             self._robots[name] = MoveBase(
                 name, lambda robot=name: self._odometry_frame(robot), self._mux, self._clock)
+        self._announcer.announce()
 
     def get(self, name):
         """Return a robot's :class:`MoveBase`, or None."""
