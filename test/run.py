@@ -97,12 +97,20 @@ class Job:
                  sum(case.skipped for case in cases))
         print('{} {:6.1f} s  {}: {}'.format('FAIL' if self.failed else '  ok', took_s, self.name,
                                             words_of(count)), flush=True)
+        for line in self.insisted():
+            print('INSISTED {}: {}'.format(self.name, line), flush=True)
         if self.failed:
             print(self.log.read_text(errors='replace'))
         for case in self.failed:
             print('FAILED {}: {}.{}: {}'.format(self.name, case.group, case.name, case.problem),
                   flush=True)
         return count
+
+    def insisted(self):
+        """Return what it says it did more than once, see :func:`support.ros_system.insist`."""
+        said = [path.read_text(errors='replace') for path in (self.log, *self.results)
+                if path.exists()]
+        return re.findall(r'INSISTED (\d+ times: .*)', '\n'.join(said))
 
     def cases(self):
         """Return its tests once it has ended; what it has left behind is ended."""

@@ -40,7 +40,8 @@ class Case(unittest.TestCase):
         exec(sys.argv[1])
 
     def test_two(self):
-        pass
+        from support.ros_system import say_insisted
+        say_insisted(3, 'a node')
 
 
 rosunit.unitrun('mhri', 'node', Case)
@@ -164,6 +165,9 @@ def test_each_way_to_end_counts(package):
             if match}
     assert said == {name: ('FAIL' if failed else '  ok', '{} passed, {} failed'.format(
         passed, failed)) for name, (passed, failed) in counts.items()}
+    # So does what had to be done more than once, whether it is printed or in a file of results.
+    assert sorted(line for line in lines if line.startswith('INSISTED ')) == [
+        'INSISTED system-map-{}: 3 times: a node'.format(name) for name in ('fail', 'pass')]
     passes, failures = map(sum, zip(*counts.values()))
     assert (lines[-1], status) == ('{} passed, {} failed'.format(passes, failures), 1)
     assert len([line for line in lines if line.startswith('FAILED ')]) == failures

@@ -110,7 +110,9 @@ class DriveCase(unittest.TestCase):
 
     def setUp(self):
         self.operator.check()
-        if self.state.message.operator != rospy.get_name():
+        self.operator.set()
+        # What was said before may be of a drive that the last test has ended.
+        if self.state.wait(lambda state: True, 'the drive').operator != rospy.get_name():
             self.operator.take()
         self.operator.release()
         self.state.wait(lambda state: not state.stop_all and state.operator == rospy.get_name()
@@ -184,7 +186,7 @@ class DriveCase(unittest.TestCase):
     def keep_on(self, good, what, linear, angular=0.0):
         """Hold the stick until something is good; return that.
 
-        It is centred where the drive asks for that: while this process stands still, it is silent.
+        It is centred where the drive asks for that.
         """
         def there():
             state = self.state.message

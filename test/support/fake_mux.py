@@ -11,7 +11,7 @@ from std_srvs.srv import Trigger
 from mhri.msg import DriveSettings, DriveState, RobotSelect
 from support import graph
 from support.graph import TAKE_CONTROL
-from support.ros_system import wait_for
+from support.ros_system import wait_for, words_of
 
 
 class FakeOperator:
@@ -89,6 +89,11 @@ class StateEar:
         self.message, self.at = message, now
         self._heard.append((self.at, message))
 
+    def __repr__(self):
+        """Say how old the newest one is, and what it says."""
+        return 'nothing' if self.at is None else 'the state of {:.1f} s ago: {}'.format(
+            time.monotonic() - self.at, self.message)
+
     def said(self, good, what, since):
         """Wait until it has been good since a time, for however short a while; return when."""
         return wait_for(lambda: next((at for at, message in list(self._heard)
@@ -104,9 +109,7 @@ class StateEar:
         def found():
             at, message = self._heard[-1] if self._heard else (asked, None)
             return at > asked and good(message) and message
-        return wait_for(found, timeout_s, lambda: '{}; the last state is {:.1f} s old: {}'.format(
-            what() if callable(what) else what, time.monotonic() - (self.at or asked),
-            self.message))
+        return wait_for(found, timeout_s, lambda: '{}, and not {!r}'.format(words_of(what), self))
 
     def robot(self, name):
         """Return what is said of one robot, or None."""

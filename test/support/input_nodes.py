@@ -51,7 +51,7 @@ class InputCase(unittest.TestCase):
 
     def _mode(self, name):
         self.select.publish(source=name)
-        self.modes.wait(lambda _: self.modes.last() == name)
+        self.modes.wait_newest(name)
 
     def _one_neutral(self, begun, words, promised_s=None):
         """Check that the last message after a time is the one neutral one, and when it came."""

@@ -30,7 +30,7 @@ class LiveScreen:
 
     def until(self, condition, what):
         """Let Qt work until a condition comes true."""
-        wait_for(lambda: (self._app.processEvents(), condition())[1], TIMEOUT_S, what)
+        wait_for(condition, TIMEOUT_S, what, turn=self._app.processEvents)
 
     def run(self, seconds):
         """Let Qt work for some seconds, without a measurement's own work."""

@@ -64,10 +64,7 @@ class PanelSession:
 
     def until(self, condition, timeout_s=START_S, what='the condition'):
         """Let Qt work until a condition comes true; return what is true."""
-        def turn():
-            self.app.processEvents()
-            return condition()
-        return wait_for(turn, timeout_s, what)
+        return wait_for(condition, timeout_s, what, turn=self.app.processEvents)
 
     def open(self, name):
         """Look at a robot alone, open its switches, and return its tile."""

@@ -11,7 +11,7 @@ import rospy
 
 from mhri.robots.link import Motion
 from support import graph, rostest_tools
-from support.ros_system import wait_for
+from support.ros_system import insist, wait_for
 
 
 class Witness:
@@ -35,6 +35,10 @@ class Witness:
                 last = self._log[-1][2]
                 self.path_m += math.hypot(place.x - last[0], place.y - last[1])
             self._log.append((now, Motion(twist.linear.x, twist.angular.z), (place.x, place.y)))
+
+    def __repr__(self):
+        """Say what it did last, as (when, speeds, place)."""
+        return '{}: {}'.format(self.name, self._log[-3:])
 
     def live(self):
         with self._lock:
@@ -147,20 +151,10 @@ class Stick(rostest_tools.Stick):
     def drive(self, forward, turn, moving, timeout_s, what):
         """Centre the stick and push it, until who is driven moves.
 
-        :raises AssertionError: see :func:`wait_for`
+        :raises NotYet: see :func:`wait_for`
         """
-        tries = []
-
         def driven():
-            self.hold(0.0, 0.0)
-            # Long enough for a few messages of it.
-            time.sleep(0.15)
-            begun = self.hold(forward, turn)
-            # On a busy computer each attempt is given more time than the last one.
-            tries.append(begun)
-            while time.monotonic() < begun + min(10.0, float(len(tries))):
-                if moving():
-                    return True
-                time.sleep(0.02)
-            return False
-        wait_for(driven, timeout_s, what)
+            self.repeat(0.0, 0.0)
+            self.hold(forward, turn)
+            return wait_for(moving, 2.0, what, poll_s=0.02)
+        insist(driven, what, timeout_s)

@@ -11,6 +11,7 @@ import subprocess
 import sys
 import tempfile
 import time
+import traceback
 import uuid
 import xmlrpc.client
 
@@ -25,32 +26,120 @@ TIMEOUT_S = 60.0
 QUICK_S = 10.0
 # The longest rest between two looks that take long themselves: at the master, at processes [s].
 REST_S = 0.05
+# Of what a condition looked at in vain so many letters are printed, and so many dots are followed.
+MOST_WORDS, MOST_DOTS = 1000, 4
 # Marks of the ports that were given out here, held until this process ends.
 _GIVEN_OUT = []
 
 
-def wait_for(condition, timeout_s=TIMEOUT_S, what='the condition', poll_s=0.002):
+class NotYet(AssertionError):
+    """What was waited for did not come in time."""
+
+
+def wait_for(condition, timeout_s=TIMEOUT_S, what='the condition', poll_s=0.002,
+             turn=lambda: None):
     """Return the first true value of a condition.
 
     Looking takes a third of a processor at most, or what is waited for would come late for it.
 
+    :param condition: not true while it looks for something that is not there (StopIteration); one
+        that does something for it counts in ``times`` how often, which is printed
     :param timeout_s: from QUICK_S on it is patience, of which there is never less than TIMEOUT_S
     :param what: what is waited for, or a function that says so at the end
-    :raises AssertionError: it did not come true in time
+    :param turn: called before each look
+    :raises NotYet: it did not come true in time
     """
     if timeout_s >= QUICK_S:
         timeout_s = max(timeout_s, TIMEOUT_S)
     deadline = time.monotonic() + timeout_s
     while True:
         begun = time.monotonic()
-        value = condition()
+        turn()
+        value = None
+        with contextlib.suppress(StopIteration):
+            value = condition()
         if value:
+            say_insisted(getattr(condition, 'times', 1), what)
             return value
         now = time.monotonic()
         if now > deadline:
-            raise AssertionError('waited {:g} s for {}'.format(
-                timeout_s, what() if callable(what) else what))
+            raise NotYet('waited {:g} s for {}; there is: {}'.format(
+                timeout_s, words_of(what), seen_by(condition)))
         time.sleep(max(poll_s, min(2.0 * (now - begun), REST_S)))
+
+
+def seen_by(condition):
+    """Return in words what a condition looks at: the variables around it, and what it asks of them.
+    """
+    code = getattr(condition, '__code__', None)
+    if code is None:
+        return ', '.join(seen_by(part) for part in vars(condition).values()
+                         if hasattr(part, '__code__'))
+    seen, around = {}, {'self': getattr(condition, '__self__', None)}
+    for name, cell in zip(code.co_freevars, condition.__closure__ or ()):
+        with contextlib.suppress(ValueError):  # nothing is in it yet
+            around[name] = cell.cell_contents
+
+    def look(name, value):
+        """Note a value, or, where it says nothing of itself, its parts that are asked for."""
+        if name != 'self' and type(value).__repr__ is not object.__repr__:
+            seen[name] = value
+            return
+        for part in code.co_names if name.count('.') < MOST_DOTS else ():
+            with contextlib.suppress(Exception):
+                if not callable(getattr(value, part)):
+                    look('{}.{}'.format(name, part), getattr(value, part))
+    for name, value in around.items():
+        if not callable(value):
+            look(name, value)
+    return ', '.join('{}={}'.format(name, ' '.join(repr(value).split())[:MOST_WORDS])
+                     for name, value in seen.items()) or 'nothing'
+
+
+def insist(attempt, what, timeout_s=TIMEOUT_S, poll_s=0.002):
+    """Do something until it succeeds; return what it returned then.
+
+    For what mhri rightly refuses after a process has stood still: a stick has to be centred again
+    then, and a task whose robot was not heard has ended. It is no way to wait for something slow.
+    How often it was needed is printed, and counted by the runner: once where a machine has time.
+
+    :param attempt: returns a true value once it succeeds; else something false, or NotYet is raised
+    :raises NotYet: it did not in time
+    """
+    attempts = Attempts(attempt)
+    return wait_for(attempts, timeout_s, lambda: words_of(what) + (
+        attempts.said and '; before: ' + attempts.said), poll_s)
+
+
+class Attempts:
+    """An attempt as a condition."""
+
+    def __init__(self, attempt):
+        self.attempt, self.times, self.said = attempt, 0, ''
+
+    def __call__(self):
+        self.times += 1
+        try:
+            return self.attempt()
+        except NotYet as error:
+            self.said = str(error)
+            return None
+
+
+def say_insisted(times, what):
+    """Print how often something was done until it succeeded, where it was not at once."""
+    if times > 1:
+        print('INSISTED {} times: {}'.format(times, ' '.join(words_of(what).split())[:300]),
+              flush=True)
+
+
+def words_of(what):
+    """Return words, or what a function says."""
+    try:
+        return what() if callable(what) else what
+    except StopIteration as missing:
+        return 'something that is not there: {}'.format(
+            traceback.extract_tb(missing.__traceback__)[-1].line)
 
 
 @contextlib.contextmanager
@@ -126,11 +215,11 @@ def family_of(process):
 
 
 def freeze(*numbers):
-    """Stop processes by their numbers; return when they were told to [s, monotonic].
+    """Stop processes by their numbers; return when the first was signalled [s, monotonic].
 
-    That is once every thread stands: each takes the signal by itself, and some go on for a moment.
+    It returns once every thread stands: each takes the signal by itself, some a moment later.
 
-    :raises AssertionError: a thread goes on
+    :raises NotYet: a thread goes on
     """
     when = time.monotonic()
     for number in numbers:

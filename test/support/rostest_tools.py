@@ -22,7 +22,7 @@ from sensor_msgs.msg import Joy
 from mhri.msg import DriveState
 from support import graph
 from support.paths import SUPPORT
-from support.ros_system import tell, wait_for
+from support.ros_system import insist, NotYet, tell, wait_for
 
 TIMEOUT_S = 60.0
 # Within this what was sent has been heard, and what was on its way has come [s].
@@ -78,6 +78,10 @@ class Recorder:
             self._noted.append(Noted(self._read(message), message._connection_header['callerid']))
             self._changed.notify_all()
 
+    def __repr__(self):
+        """Say what came last."""
+        return '{}: {}'.format(self.topic, self.since(0.0)[-5:])
+
     def since(self, start):
         """Return what was noted after a time."""
         with self._changed:
@@ -88,11 +92,13 @@ class Recorder:
         with self._changed:
             return self._noted[-1].value if self._noted else None
 
-    def wait(self, good, start=0.0, patience_s=TIMEOUT_S):
+    def wait(self, good, start=None, patience_s=TIMEOUT_S):
         """Wait for the first message after a time of which ``good(value)`` is true; return it.
 
-        :raises AssertionError: none came
+        :param start: that time; None: from now on
+        :raises NotYet: none came
         """
+        start = time.monotonic() if start is None else start
         deadline = time.monotonic() + patience_s
         with self._changed:
             while True:
@@ -101,24 +107,32 @@ class Recorder:
                         return item
                 left = deadline - time.monotonic()
                 if left <= 0.0:
-                    raise AssertionError('nothing of the kind on {} in {} s, only {}'.format(
+                    raise NotYet('nothing of the kind on {} in {} s, only {}'.format(
                         self.topic, patience_s, [item for item in self._noted
                                                  if item.at >= start][-20:]))
                 self._changed.wait(left)
 
-    def settle(self, value, patience_s=TIMEOUT_S):
-        """Wait for a message with this value that answers what is sent by now.
+    def settle(self, *values, patience_s=TIMEOUT_S):
+        """Wait for a message with one of these values that answers what is sent by now.
 
         The newest one may be older than that, and so may the next.
 
-        :raises AssertionError: none came
+        :raises NotYet: none came
         """
-        return self.wait(lambda now: now == value, time.monotonic() + ANSWERS_S, patience_s)
+        return self.wait(lambda now: now in values, time.monotonic() + ANSWERS_S, patience_s)
+
+    def wait_newest(self, value, patience_s=TIMEOUT_S):
+        """Wait until the newest message of a topic that says only what changes has this value.
+
+        :raises NotYet: it has not
+        """
+        wait_for(lambda: self.last() == value, patience_s, lambda: '{} as the newest of {}'.format(
+            value, self))
 
     def wait_silence(self, seconds, patience_s=TIMEOUT_S):
         """Wait until nothing has come for so long; return the newest message, None without one.
 
-        :raises AssertionError: messages never ceased
+        :raises NotYet: messages never ceased
         """
         deadline = time.monotonic() + patience_s
         begun = time.monotonic()
@@ -129,7 +143,7 @@ class Recorder:
                 if left <= 0.0:
                     return self._noted[-1] if self._noted else None
                 if time.monotonic() > deadline:
-                    raise AssertionError('{} never falls silent'.format(self.topic))
+                    raise NotYet('{} never falls silent'.format(self.topic))
                 self._changed.wait(left)
 
     def wait_zeros(self, first, least=5, most=12):
@@ -261,21 +275,16 @@ class Stick:
             for buttons in ((0,) * len(self._buttons), self._buttons):
                 self.repeat(axes, buttons)
             return waits.last() == ''
-        wait_for(seen, what='the mux waits for something')
+        insist(seen, lambda: 'the mux to wait for nothing: {}'.format(waits.last()))
 
     def set_out(self, waits, twists, axes=FORWARD, buttons=None):
-        """Centre the stick, and push it until robots move; return when the first command came.
-
-        And again where the mux asks for neutral once more: while this process stands still, the
-        stick is silent.
-        """
+        """Centre the stick, and push it until robots move; return when the first command came."""
         def moved():
             self.hold(NEUTRAL, buttons)
             waits.settle('')
             begun = self.hold(axes, buttons)
-            with contextlib.suppress(AssertionError):
-                return twists.wait(moves, begun, 5.0).at
-        return wait_for(moved, what='motion')
+            return twists.wait(moves, begun, 5.0).at
+        return insist(moved, 'motion')
 
     def silence(self):
         """Send nothing from now on; return when the last message was sent."""

@@ -34,10 +34,8 @@ class Screen:
         self._process.stdin.flush()
 
     def wait(self, what, condition):
-        try:
-            wait_for(lambda: self.shown and condition(self.shown), START_S)
-        except AssertionError:
-            raise AssertionError('{} does not show {}: {}'.format(self.name, what, self.shown))
+        wait_for(lambda: self.shown and condition(self.shown), START_S,
+                 lambda: '{} to show {}, not {}'.format(self.name, what, self.shown))
 
     def kill(self):
         self._process.kill()

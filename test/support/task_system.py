@@ -5,6 +5,7 @@
 With a :class:`support.machines.Lan` each robot has a computer of its own, whose link can be cut;
 without one all of it is on this computer.
 """
+import collections
 import os
 import signal
 import subprocess
@@ -22,7 +23,7 @@ from support import machines
 from support.fake_mux import StateEar
 from support.random_world import GUARD, HERE, PROCESS
 from support.robots import RobotLog
-from support.ros_system import family_of, node_words, System, tell, wait_for
+from support.ros_system import family_of, node_words, say_insisted, System, tell, wait_for
 
 TIMEOUT_S = 90.0
 NODES = ('mux', 'tasks')
@@ -135,13 +136,14 @@ class TaskSystem:
     def patrol(self, least_s=0.0):
         """Send every robot on patrol; return when all of them drive, and so much time has passed.
 
-        Again, whose task did not reach it in time: of a busy computer that is to be expected.
+        Again, whose task did not reach it in time.
         """
-        goals, begun = {}, time.monotonic()
+        goals, sent, begun = {}, collections.Counter(), time.monotonic()
 
         def going():
             for name, (_, _, _, y_m, _) in ROBOTS.items():
                 if name not in goals or goals[name].get_comm_state() == actionlib.CommState.DONE:
+                    sent[name] += 1
                     goals[name] = self._client.send_goal(RunTaskGoal(
                         'patrol', [name], '{{route: {}, speed: 0.2}}'.format(
                             [[LANE_M[1], y_m], [LANE_M[0], y_m]])))
@@ -149,6 +151,7 @@ class TaskSystem:
                 log.drives() for log in self.logs.values())
         wait_for(going, TIMEOUT_S, lambda: 'all to drive; {}'.format(
             [(row.robot, row.state, row.text) for run in self.runs for row in run.robots]), 0.01)
+        say_insisted(max(sent.values()), 'all to be on patrol')
 
     def on_task(self):
         """Return the robots that have a task."""

@@ -18,7 +18,7 @@ from std_srvs.srv import SetBool
 from support import graph
 from support.paths import MESSAGES
 from support.rostest_tools import NEUTRAL, Recorder, Stick, velocity
-from support.ros_system import wait_for
+from support.ros_system import insist, NotYet, wait_for
 
 sys.path.insert(0, MESSAGES)
 
@@ -132,31 +132,18 @@ class TasksCase(unittest.TestCase):
         self.assertIsNotNone(goal.get_result(), goal.get_goal_status_text())
         return [(robot.state, robot.text) for robot in goal.get_result().robots]
 
-    def ended(self, robots, task, parameters=''):
-        """Do a task to its end; return as :meth:`ends` does.
+    def ended(self, robots, task, parameters='', good=lambda state: state != TaskState.LOST):
+        """Do a task to an end that is good; return as :meth:`ends` does.
 
-        Again where something came too late: on a busy machine that says nothing of the task.
+        :param good: whether the state of a robot is; at least nothing came too late
         """
         def in_time():
             ended = self.ends(self.start(robots, task, parameters))
-            if TaskState.LOST not in (state for state, _ in ended):
-                return ended
-            print('again: {}'.format(ended))
-            return None
-        return wait_for(in_time, what='everything to come in time')
+            if not all(good(state) for state, _ in ended):
+                raise NotYet(str(ended))
+            return ended
+        return insist(in_time, '{} to end well'.format(task))
 
     def done(self, robots, task, parameters=''):
-        """Do a task to its end, which has to be a good one; return the first sentence.
-
-        Again where it failed: on a busy machine a pose may be late for longer than it may be.
-        """
-        tries = []
-
-        def is_done():
-            tries.append(self.ended(robots, task, parameters))
-            if {state for state, _ in tries[-1]} == {TaskState.DONE}:
-                return True
-            print('again: {}'.format(tries[-1]))
-            return False
-        wait_for(is_done, what=lambda: 'a good end, not {}'.format(tries))
-        return tries[-1][0][1]
+        """Do a task to its end, which has to be a good one; return the first sentence."""
+        return self.ended(robots, task, parameters, lambda state: state == TaskState.DONE)[0][1]

@@ -16,7 +16,7 @@ import rosgraph
 
 from support import graph
 from support.robots import RobotLog
-from support.ros_system import System, tell, TIMEOUT_S, wait_for
+from support.ros_system import insist, System, tell, TIMEOUT_S, wait_for
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 ROBOTS = ('bot1', 'bot2')
@@ -172,12 +172,9 @@ class UnderFire:
             self.call_stop(False)
             time.sleep(0.2)
             self.hold(0.5)
-            until = time.monotonic() + 1.0
-            while time.monotonic() < until and not self.moving(*names):
-                time.sleep(0.01)
-            return self.moving(*names)
+            return wait_for(lambda: self.moving(*names), 1.0, 'all to move')
         if not self.moving(*names):
-            wait_for(moves, what=lambda: 'all to move: {}'.format(
+            insist(moves, lambda: 'all to move: {}'.format(
                 {name: log.rows()[-2:] for name, log in self.robots.items()}))
 
     def call_stop(self, stopped):

@@ -19,6 +19,10 @@ class VelocityEnd:
     def _on_twist(self, message):
         self.received.append((time.monotonic(), message.linear.x, message.angular.z))
 
+    def __repr__(self):
+        """Say what came last."""
+        return '{}: {}'.format(self.subscriber.resolved_name, self.received[-5:])
+
     def connected(self):
         return self.subscriber.get_num_connections() > 0
 

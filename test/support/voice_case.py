@@ -17,7 +17,7 @@ from support import speech
 from support.input_nodes import InputCase, InputNode, START_S
 from support.room import Room
 from support.rostest_tools import measured, moves, NEUTRAL, Process, Recorder, Stick
-from support.ros_system import wait_for
+from support.ros_system import insist, NotYet, wait_for
 
 ROBOTS = ['bot1', 'bot2', 'rover']
 # Half of the speed limit is what a spoken drive begins with.
@@ -107,8 +107,8 @@ class VoiceTest(InputCase):
     def _ready(self):
         """Choose the voice's mode; wait until the mux would follow a command."""
         self._mode('voice')
-        self.node.joys.wait(lambda value: True, patience_s=START_S)
-        self.waits.wait(lambda _: self.waits.last() == '', patience_s=START_S)
+        self.node.joys.wait(lambda value: True, 0.0, START_S)
+        self.waits.settle('', patience_s=START_S)
 
     def _resume(self):
         """Listen although another source drives."""
@@ -129,7 +129,11 @@ class VoiceTest(InputCase):
 
         A recogniser that understands nineteen of twenty would fail one of twenty tests.
         """
-        for voice in VOICES:
+        voices = iter(VOICES)
+
+        def taken():
+            voice = next(voices, None)
+            assert voice is not None, '"{}" was never taken'.format(text)
             begun = time.monotonic()
             self.out = self.microphone.say(text, voice)
             # What is left of an earlier stop is no answer to this.
@@ -138,28 +142,27 @@ class VoiceTest(InputCase):
             wrong = item.command == 'stop' and 'stop' not in text
             if item.accepted and item.command.startswith(command) and not wrong:
                 return begun
-            print('not taken: "{}": {}'.format(text, item))
             if release:
                 self._release()
-        raise AssertionError('"{}" was never taken'.format(text))
+            raise NotYet(str(item))
+        return insist(taken, '"{}" to be taken'.format(text), 10 * HEAR_S)
 
     def _drive(self, text='robot drive forward', twist=FORWARD_TWIST):
         """Say something that drives, at rest; return when the first Twist came.
 
-        Again where the mux waits for something: for neutral, where it has missed the voice for half
-        a second meanwhile.
+        The mux may wait for neutral, where it has missed the voice for half a second meanwhile.
         """
-        while True:
+        def driven():
             begun = self._said(text)
             try:
-                first = self.twists.wait(moves, begun, HEAR_S)
-                break
-            except AssertionError:
-                if not [item for item in self.waits.since(begun - HEAR_S) if item.value]:
-                    raise
+                return self.twists.wait(moves, begun, HEAR_S)
+            except NotYet as error:
+                assert [item for item in self.waits.since(begun - HEAR_S) if item.value], error
                 # What is said may sound like a stop on the way, which is carried out at once.
                 self._release()
-                self.waits.settle('', START_S)
+                self.waits.settle('', patience_s=START_S)
+                raise
+        first = insist(driven, '"{}" to drive'.format(text), 10 * HEAR_S)
         self.assertEqual(first.value, twist)
         measured('end of "{}" to Twist'.format(text), first.at - self.out)
         return first.at

@@ -122,7 +122,7 @@ class InputNodes(unittest.TestCase):
 
     def _said(self, level, device, note):
         """Wait for what is said of the device."""
-        self.there.wait(lambda value: self.there.last() == (level, device, note))
+        self.there.wait_newest((level, device, note))
 
     def test_it_says_which_device_is_there(self):
         """Suspended or not, on every change."""
@@ -147,8 +147,9 @@ class InputNodes(unittest.TestCase):
         self.reader.finds = lambda: ''
         self.assertTrue(self.set_suspended(True).success)
         self._said(stale, '', '')
+        begun = time.monotonic()
         self.reader.finds = lambda: 1 / 0
-        self.there.wait(lambda value: 'ZeroDivisionError' in value[2])
+        self.there.wait(lambda value: 'ZeroDivisionError' in value[2], begun)
 
     def test_a_driver_that_hangs_does_not_delay_the_neutral_on_suspend(self):
         """Nor does what it brings home later move anything."""

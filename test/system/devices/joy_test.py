@@ -116,7 +116,7 @@ class Joy(InputCase):
         """At the edge of stop-all, and when the panel says that a robot is lost; never else."""
         self.node.attach(PS3)
         self.node.resume()
-        self.node.joys.wait(lambda value: True, patience_s=25.0)
+        self.node.joys.wait(lambda value: True, 0.0, 25.0)
         lost = rospy.Publisher('/mhri_joy/rumble', Empty, queue_size=1)
         wait_for(lost.get_num_connections, what='nobody listens')
         set_stop = rospy.ServiceProxy(graph.SET_STOP_ALL, SetBool)

@@ -92,7 +92,7 @@ class PedalTest(InputCase):
     def _ready(self):
         """Choose the pedal's mode; wait until the mux would follow a press."""
         self._mode('pedal')
-        self.waits.settle('', 30.0)
+        self.waits.settle('', patience_s=30.0)
 
 
 class FootSwitch(PedalTest):
@@ -199,7 +199,7 @@ class Enabling(PedalTest):
         """It resumes by itself; the mux, which suspends what is not in force, cannot stop it."""
         switch = self.node.plug()
         self.node.wait_grabbed(switch)
-        self.node.joys.wait(lambda value: value.buttons == (0, 0, 0, 0), patience_s=30.0)
+        self.node.joys.wait(lambda value: value.buttons == (0, 0, 0, 0), 0.0, 30.0)
         self.assertTrue(self.node.suspend().success)
         for mode in ('pedal', 'joy'):
             self._mode(mode)

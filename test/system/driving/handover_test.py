@@ -23,7 +23,7 @@ from support import graph  # noqa: E402
 from support.rostest_tools import (  # noqa: E402
     FORWARD, measured, moves, NEUTRAL, Recorder, rests, start_mux, state_recorder, Stick,
     twist_recorder)
-from support.ros_system import wait_for  # noqa: E402
+from support.ros_system import insist, wait_for  # noqa: E402
 
 PS3_UP = (0.0, -1.0)
 # Buttons of resource/pads/ps3.yaml and xbox.yaml that are tried here.
@@ -85,7 +85,7 @@ class Handover(unittest.TestCase):
 
     def assert_held_until_neutral(self, begun, stick, axes=FORWARD):
         """Nothing may move from now on, until the stick was centred."""
-        self.waits.wait(lambda _: self.waits.last() == 'neutral')
+        self.waits.settle('neutral')
         self.twists.wait_silence(0.7)
         first = self.twists.wait(rests, begun).at
         self.assertFalse([item for item in self.twists.since(first) if moves(item.value)])
@@ -95,15 +95,15 @@ class Handover(unittest.TestCase):
         """Axes and dead-man button are those of the pad's own file; without one it is refused."""
         self.mux()
         self.mode.publish(source='ps3joy')
-        self.modes.wait(lambda value: value == 'ps3joy')
+        self.modes.wait_newest('ps3joy')
         self.pad.hold(NEUTRAL)
-        self.waits.wait(lambda _: self.waits.last() == 'dead_man')
+        self.waits.settle('dead_man')
         with self.pad.frame('profile:ps4'):
             self.drive(self.pad, PS3_UP)
         begun = self.pad.hold(PS3_UP)
         with self.pad.frame('profile:no_such_pad'):
             self.twists.wait(rests, begun)
-            self.waits.wait(lambda _: self.waits.last() == 'source')
+            self.waits.settle('source')
             self.twists.wait_silence(0.7)
         self.assertIn('no_such_pad', self.process.said())
         with self.pad.frame('profile:ps3'):
@@ -119,9 +119,8 @@ class Handover(unittest.TestCase):
         self.joy.hold(NEUTRAL)
         self.waits.settle('')
         self.twists.wait_silence(0.7)
-        # Again where the mux asks for neutral once more: a pad is silent while this process stands.
-        wait_for(self.pad_touched, what='the pad to take over')
-        self.waits.wait(lambda _: self.waits.last() == 'neutral')
+        insist(self.pad_touched, 'the pad to take over')
+        self.waits.settle('neutral')
         for frame in ('', 'profile:xbox'):
             with self.pad.frame(frame):
                 self.pad.repeat(NEUTRAL, held())
@@ -148,7 +147,7 @@ class Handover(unittest.TestCase):
         self.assertEqual(self.requests.since(0.0), [], 'the pad does not drive')
         wait_for(STOP_FILE.stopped, what='the stop is not remembered')
         self.mode.publish(source='ps3joy')
-        self.modes.wait(lambda value: value == 'ps3joy')
+        self.modes.wait_newest('ps3joy')
         for action in ('next', 'previous', 'select_all', 'mark'):
             self.pad.repeat(NEUTRAL, held())
             begun = self.pad.hold(NEUTRAL, held(PS3_BUTTONS[action]))
@@ -161,7 +160,7 @@ class Handover(unittest.TestCase):
     def test_the_enabling_pedal(self):
         self.mux('_enabling:=pedal')
         self.joy.hold(NEUTRAL)
-        self.waits.wait(lambda _: self.waits.last() == 'enabling')
+        self.waits.settle('enabling')
         self.joy.hold(FORWARD)
         self.twists.wait_silence(0.7)
         self.assertFalse([item for item in self.twists.since(0.0) if moves(item.value)])

@@ -13,7 +13,7 @@ import pytest
 
 from mhri.screen.presenters.stop_watch_process import STOPPED
 from support import graph
-from support.ros_system import child_processes, System, wait_for
+from support.ros_system import child_processes, insist, System, wait_for
 from support.stuck_panel import HANGS
 
 pytestmark = pytest.mark.timed
@@ -102,13 +102,9 @@ class Desk:
                 return False
             begun = time.monotonic()
             self._axes[1] = 0.5
-            deadline = begun + 1.0
-            while time.monotonic() < deadline:
-                if any(forward for _, forward, _ in self.robot.after(begun)):
-                    return True
-                time.sleep(0.01)
-            return False
-        wait_for(drives, TIMEOUT_S, 'the pedal to drive the robot', poll_s=0.1)
+            return wait_for(lambda: any(forward for _, forward, _ in self.robot.after(begun)), 1.0,
+                            'the robot to move', poll_s=0.01)
+        insist(drives, 'the pedal to drive the robot', TIMEOUT_S, poll_s=0.1)
 
     def release(self):
         """Release stop-all; tell whether it is."""

@@ -61,10 +61,10 @@ def running(node, uri=None):
     return found
 
 
-def always(node):
+def always(node, uri=None):
     """Return what a node has, without the camera and laser that a tile on show subscribes."""
-    of_tile = ('/scan', '/tf', '/tf_static') if node == 'mhri_panel' else ('/scan',)
-    return {row for row in running('/' + node) if row[0] != 'subscribes'
+    of_tile = ('/scan', '/tf', '/tf_static') if node == '/mhri_panel' else ('/scan',)
+    return {row for row in running(node, uri) if row[0] != 'subscribes'
             or '/camera/' not in row[1] and not row[1].endswith(of_tile)}
 
 
@@ -178,10 +178,7 @@ class ApiTest(unittest.TestCase):
                 wanted |= of_accessories(direction, name)
             else:
                 wanted.add((direction, name.replace('<robot>', 'bot1'), kind))
-        try:
-            wait_for(lambda: always(node) == wanted, 60, node)
-        except AssertionError:
-            self.assertEqual(always(node), wanted)
+        self.becomes('/' + node, None, wanted, always)
 
     def test_both_ends_of_a_link(self):
         with System(adopt=False) as robot:
@@ -214,19 +211,15 @@ class ApiTest(unittest.TestCase):
             self.becomes('/bot3/mhri_link', uri, filled(
                 documented('mhri_link', there), 'bot3', streams))
 
-    def becomes(self, node, uri, wanted):
-        """Wait until a node has this and nothing else; show the difference where it does not."""
-        try:
-            wait_for(lambda: running(node, uri) == wanted, 60, node, 0.1)
-        except AssertionError:
-            self.assertEqual(running(node, uri), wanted)
+    @staticmethod
+    def becomes(node, uri, wanted, read=running):
+        """Wait until a node has this and nothing else."""
+        wait_for(lambda: read(node, uri) == wanted, what=lambda: '{}: missing {}, more {}'.format(
+            node, wanted - read(node, uri), read(node, uri) - wanted), poll_s=0.1)
 
     def test_input_nodes(self):
         for name in INPUTS:
-            try:
-                wait_for(lambda: running('/' + name) == documented(name), 60, name)
-            except AssertionError:
-                self.assertEqual(running('/' + name), documented(name))
+            self.becomes('/' + name, None, documented(name))
 
     def test_drill(self):
         self.system.node('mhri_drill', 'maze')
@@ -251,10 +244,7 @@ class ApiTest(unittest.TestCase):
                       for direction, name, kind in pages
                       if name.replace('<robot>', robot) in own}
             self.assertEqual({name for _, name, _ in wanted}, own)
-            try:
-                wait_for(lambda: running(node) == wanted, 60, node)
-            except AssertionError:
-                self.assertEqual(running(node), wanted)
+            self.becomes(node, None, wanted)
 
 
 if __name__ == '__main__':

@@ -29,7 +29,7 @@ from support.rostest_tools import NEUTRAL, Recorder, Stick  # noqa: E402
 from mhri.msg import ControlMode, Place, Places, RunTaskAction, RunTaskGoal, TaskState  # noqa: E402
 from mhri.srv import FitPlace, SetFence, SetMark, SetPlace  # noqa: E402
 from support.fake_mux import FakeOperator, StateEar  # noqa: E402
-from support.ros_system import processes_with, wait_for  # noqa: E402
+from support.ros_system import insist, NotYet, processes_with, wait_for  # noqa: E402
 
 TIMEOUT_S = 60.0
 BOT1, BOT2, BOT3 = (3.0, 1.0, 0.0), (2.0, 2.0, 1.0), (1.5, 3.2, 0.4)
@@ -103,10 +103,7 @@ class WherePlaced(unittest.TestCase):
                         and math.isnan(place.odometry.x), words)
 
     def ends(self, robot, task, parameters):
-        """Run a task to its end; return (state, sentence).
-
-        Again where something came too late: on a busy machine that says nothing of the task.
-        """
+        """Run a task to its end; return (state, sentence)."""
         def in_time():
             for name in ('bot1', 'bot2', 'bot3'):
                 self.state.wait_robot(name, lambda gate: gate.topic and not gate.obeys
@@ -115,8 +112,10 @@ class WherePlaced(unittest.TestCase):
             wait_for(lambda: goal.get_comm_state() == actionlib.CommState.DONE,
                      what='the task goes on', timeout_s=120.0)
             ended = goal.get_result().robots[0]
-            return ended.state != TaskState.LOST and (ended.state, ended.text)
-        return wait_for(in_time, what='everything to come in time')
+            if ended.state == TaskState.LOST:
+                raise NotYet(ended.text)
+            return ended.state, ended.text
+        return insist(in_time, '{} to end'.format(task))
 
     def put(self, name, x, y, theta=0.0):
         """Place a robot by hand once its odometry is heard."""

@@ -89,7 +89,7 @@ class MuxMaster(unittest.TestCase):
         begun = self._kill_master()
         first = self.twists.wait(rests, begun)
         measured('first zero after the master was killed', first.at - begun)
-        self.waits.wait(lambda _: self.waits.last() == 'neutral')
+        self.waits.settle('neutral')
         self.twists.wait_silence(SILENCE_S)
         self.assertFalse([item for item in self.twists.since(first.at) if moves(item.value)])
 
@@ -104,7 +104,7 @@ class MuxMaster(unittest.TestCase):
         answer = Process(['rosservice', 'call', graph.SET_STOP_ALL, 'true'], MASTER)
         self.assertEqual(answer.wait(), 0, answer.said())
         answer.end()
-        self.waits.wait(lambda _: self.waits.last() == 'release')
+        self.waits.settle('release')
 
     def _release(self):
         self.stick.hold(NEUTRAL)
@@ -159,13 +159,11 @@ class MuxMaster(unittest.TestCase):
 
     def _assert_registered(self, before):
         """The master knows again all that it knew of the mux; else say what is missing."""
-        try:
-            wait_for(lambda: self._registered() == before, what='')
-        except AssertionError:
-            self.fail('missing {}, additional {}; the mux said: {}'.format(
+        wait_for(lambda: self._registered() == before, what=lambda: (
+            'the master to know it: missing {}, additional {}; the mux said: {}'.format(
                 [sorted(old - new) for old, new in zip(before, self._registered())],
                 [sorted(new - old) for old, new in zip(before, self._registered())],
-                self.mux.said()))
+                self.mux.said())))
 
     def _assert_new_listeners_hear(self, words):
         """Processes that have never met the mux find it through the new master.

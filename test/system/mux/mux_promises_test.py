@@ -90,7 +90,7 @@ class MuxPromises(unittest.TestCase):
         self.state.wait_robot('bot1', lambda robot: robot.obeys == 'operator', 'the selection')
         self._mode('joy')
         self.stick.hold(NEUTRAL)
-        self.waits.wait(lambda _: self.waits.last() in ('', 'release'))
+        self.waits.settle('', 'release')
         wait_for(lambda: self.set_stop(False).success, what='the release', poll_s=0.02)
         self.state.wait_robot('bot1', lambda robot: not robot.stands, 'the robot to be ready')
         self.stick.silence()
@@ -100,7 +100,7 @@ class MuxPromises(unittest.TestCase):
         """Select a source; return when."""
         now = time.monotonic()
         self.select.publish(source=name)
-        self.modes.wait(lambda _: self.modes.last() == name)
+        self.modes.wait_newest(name)
         return now
 
     def _drive(self, stick=None):
@@ -116,7 +116,7 @@ class MuxPromises(unittest.TestCase):
         first = self.twists.wait(rests, begun)
         measured('first zero after a changed mode', first.at - begun, 0.05)
         self.twists.wait_zeros(first)
-        self.waits.wait(lambda _: self.waits.last() == 'neutral')
+        self.waits.settle('neutral')
         self.assertEqual(self.modes.last(), 'pedal')
         self._drive(self.pedal)
 
@@ -147,7 +147,7 @@ class MuxPromises(unittest.TestCase):
         self._mode('pedal')
         self.select.publish(source='telepathy')
         late = Recorder(graph.MODE, ControlMode, lambda message: message.source)
-        self.assertEqual(late.wait(lambda value: True).value, 'pedal')
+        self.assertEqual(late.wait(lambda value: True, 0.0).value, 'pedal')
         late.close()
         self._mode('joy')
         self.assertNotIn('telepathy', [item.value for item in self.modes.since(0.0)])
@@ -163,7 +163,7 @@ class MuxPromises(unittest.TestCase):
                                           for line in state.refused), 'the refusal')
         self.assertEqual(self.modes.last(), 'joy')
         voice = ask('mhri_voice')
-        self.modes.wait(lambda _: self.modes.last() == 'pedal')
+        self.modes.wait_newest('pedal')
         voice.end()
         # What is merely repeated in the wish chooses nothing.
         for mode in ('joy', 'voice', 'joy'):
@@ -171,7 +171,7 @@ class MuxPromises(unittest.TestCase):
             for _ in range(10):
                 self.operator.select.publish(robots=['bot1'], mode=mode)
                 rospy.rostime.wallsleep(0.02)
-            self.modes.wait(lambda _: self.modes.last() == mode)
+            self.modes.wait_newest(mode)
             self.assertLessEqual(len(self.modes.since(begun)), 1)
 
     def _input_node(self, name):

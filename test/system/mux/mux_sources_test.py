@@ -82,7 +82,7 @@ class MuxSources(unittest.TestCase):
     def start(self, mode, kind, topic, name):
         """Choose a source and start its program."""
         self.select.publish(source=mode)
-        self.modes.wait(lambda _: self.modes.last() == mode)
+        self.modes.wait_newest(mode)
         speaker = Speaker(kind, topic, name)
         self.addCleanup(speaker.process.end)
         self.advice.wait(lambda said: said == ('nothing_sent', '/' + name))
@@ -101,7 +101,7 @@ class MuxSources(unittest.TestCase):
         pad = self.start('joy_node', 'joy', '/joy', 'joy_node')
         buttons = [int(number == LB) for number in range(11)]
         pad.say(REST, [0] * len(buttons))
-        self.waits.wait(lambda _: self.waits.last() == 'dead_man')
+        self.waits.settle('dead_man')
         self.waits.wait(lambda now: now == '', pad.say(REST, buttons))
         self.twists.wait_silence(LONG_S)
         self.assertEqual(self.waits.last(), '', 'at rest in silence')
@@ -168,7 +168,7 @@ class MuxSources(unittest.TestCase):
     def test_a_wrong_type_is_said_with_its_remedy(self):
         """A Twist where the row says joy."""
         self.select.publish(source='mistaken')
-        self.modes.wait(lambda _: self.modes.last() == 'mistaken')
+        self.modes.wait_newest('mistaken')
         speaker = Speaker('twist', '/mistaken', 'somebody')
         self.addCleanup(speaker.process.end)
         self.advice.wait(lambda said: said == ('sends_twist', '/somebody'))
@@ -183,7 +183,7 @@ class MuxSources(unittest.TestCase):
         pad = Stick('/mux_in/lab', HELD).wait_listener()
         self.addCleanup(pad.silence)
         self.select.publish(source='lab')
-        self.modes.wait(lambda _: self.modes.last() == 'lab')
+        self.modes.wait_newest('lab')
         pad.press(self.waits)
         start = time.monotonic()
         self.select.publish(source='telepathy')

@@ -28,10 +28,10 @@ from mhri.base.views import LIVE, SILENT  # noqa: E402
 from mhri.replay.ros.replay_backend import ReplayBackend  # noqa: E402
 from mhri.session.foreign import VELOCITY_TYPES  # noqa: E402
 from support import made_session as made  # noqa: E402
-from support.ros_system import wait_for  # noqa: E402
+from support.ros_system import insist, wait_for  # noqa: E402
 
 TIMEOUT_S = 60.0
-MOMENTS, TRIES = 10, 5
+MOMENTS = 10
 # So near to a change [s] a moment is not asked for: what holds there is a matter of milliseconds.
 NEAR_S = 0.25
 REPLAY = roslib.packages.find_node('mhri', 'mhri_replay')[0]
@@ -113,27 +113,18 @@ class ReplayTest(unittest.TestCase):
         wait_for(lambda: self.screen.replay().jumps > jumps and self.screen.replay().settled,
                  TIMEOUT_S, 'the player to be at {}'.format(time_s))
 
-    def is_as_recorded(self, time_s):
-        """Return whether the screen comes to show what was so."""
-        return self.comes_to(lambda: shown(self.screen.view()) == recorded(time_s))
-
-    @staticmethod
-    def comes_to(condition):
-        """Return whether a condition comes true soon."""
-        try:
-            wait_for(condition, 5.0)
-        except AssertionError:
-            return False
-        return True
+    def comes_to(self, time_s, condition):
+        """Go to a moment of the session until a condition comes true soon."""
+        def there():
+            self.seek(time_s)
+            return wait_for(condition, 5.0, 'the screen to show it')
+        insist(there, lambda: 'the screen to show {} s: {}'.format(
+            time_s, shown(self.screen.view())))
 
     def test_at_any_moment_it_shows_what_was_recorded(self):
         self.screen.control('pause')
         for time_s in moments():
-            for _ in range(TRIES):
-                self.seek(time_s)
-                if self.is_as_recorded(time_s):
-                    break
-            self.assertEqual(shown(self.screen.view()), recorded(time_s), time_s)
+            self.comes_to(time_s, lambda: shown(self.screen.view()) == recorded(time_s))
             self.assertAlmostEqual(self.screen.replay().position_s, time_s, 2)
             self.assertAlmostEqual(self.screen.clock.wall(), made.STARTED + time_s, 2)
 
@@ -142,11 +133,7 @@ class ReplayTest(unittest.TestCase):
         for time_s in (45.0, 47.0, 43.0, 14.0, 46.0):
             lost = made.LOST_S[0] < time_s
             age_s = time_s - (made.LOST_S[0] - 0.1) if lost else 0.0
-            for _ in range(TRIES):
-                self.seek(time_s)
-                if self.comes_to(lambda: abs(self.robot('bot2').age_s - age_s) < 0.15):
-                    break
-            self.assertAlmostEqual(self.robot('bot2').age_s, age_s, delta=0.15)
+            self.comes_to(time_s, lambda: abs(self.robot('bot2').age_s - age_s) < 0.15)
             self.assertIn('{:.1f} s'.format(age_s) if lost else '', self.robot('bot2').note)
 
     def robot(self, name):

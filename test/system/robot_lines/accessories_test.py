@@ -29,7 +29,7 @@ from mhri.msg import Accessory, ControlMode  # noqa: E402
 from support import graph  # noqa: E402
 from support.drive_case import DriveCase  # noqa: E402
 from support.joy_tools import JoyNode, NO_PADS  # noqa: E402
-from support.ros_system import freeze, wait_for  # noqa: E402
+from support.ros_system import freeze, insist, wait_for  # noqa: E402
 from support.rostest_tools import measured  # noqa: E402
 
 ROWS = {
@@ -382,12 +382,12 @@ class AccessoriesTest(DriveCase):
         stick, rest = self.operator.stick, (0.0, 0.0)
 
         def pressed(before, axes, buttons, good, what):
-            # What was silent for 0.25 s, e.g. as this process stood still, has to be let go first.
+            # What was silent for 0.25 s has to be let go first.
             def is_good():
                 stick.repeat(rest, before)
-                stick.repeat(axes, buttons)
-                return good()
-            wait_for(is_good, what=what)
+                stick.hold(axes, buttons)
+                return wait_for(good, 1.0, what)
+            insist(is_good, what)
 
         def took(end):
             self.ready(self.name)

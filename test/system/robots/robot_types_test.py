@@ -32,10 +32,12 @@ from mhri.robots.ros.robot_monitors import RobotMonitors  # noqa: E402
 from mhri.robots.ros.graph_scan import look_for_robots, shipped_ignore_list  # noqa: E402
 from support.rostest_tools import FORWARD, NEUTRAL, Process, start_mux, Stick  # noqa: E402
 from support.fake_mux import FakeOperator  # noqa: E402
-from support.ros_system import wait_for  # noqa: E402
+from support.ros_system import insist, wait_for  # noqa: E402
 from support.surgery import forget  # noqa: E402
 
 TIMEOUT_S = 30.0
+# How long the stick is held until it is centred and held once more [s].
+HELD_S = 5.0
 TB3_SIGN = ('--sign', 'sensor_state', 'turtlebot3_msgs/SensorState')
 PARAMETERS = ('/robot_type', '/robot_model', '/robot_name')
 
@@ -154,15 +156,11 @@ class RobotTypesTest(unittest.TestCase):
         def fast():
             view = self.view(name)
             return view.driven and abs(view.linear_mps - most) < 0.01
-        for patience_s in (5.0, 5.0, TIMEOUT_S):
-            # On a busy machine this stick can be late for the mux, which then asks for neutral.
+
+        def driven():
             self.take_stick(name)
-            try:
-                wait_for(fast, patience_s, '{} to move at {} m/s'.format(name, most))
-                break
-            except AssertionError:
-                if patience_s == TIMEOUT_S:
-                    raise
+            return wait_for(fast, HELD_S, '{} to move at {} m/s'.format(name, most))
+        insist(driven, 'the stick to drive ' + name)
         self.operator.check()
         wait_for(lambda: self.view(name).linear_mps == 0.0, TIMEOUT_S, name + ' to stop')
 

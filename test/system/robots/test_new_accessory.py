@@ -16,6 +16,7 @@ from python_qt_binding.QtWidgets import QAbstractButton
 import rosgraph
 
 from mhri.base.accessories import READOUT
+from mhri.driving.gui.hands import Errand
 from support.newcomer import blocks, last_words
 from support.panel_session import PanelSession
 from support.ros_system import wait_for
@@ -74,15 +75,9 @@ class Rescue(PanelSession):
 
     def switch(self, text, then):
         """Click a button until another is there: what comes too late is not obeyed, and said."""
-        clicked = []
-
-        def switched():
-            button = self.found(text)
-            if button and time.monotonic() > max(clicked, default=0.0) + 5.0:
-                clicked.append(time.monotonic())
-                QTest.mouseClick(button, Qt.LeftButton)
-            return self.found(then)
-        self.until(switched, what='the button ' + then)
+        self.until(Errand(
+            lambda: QTest.mouseClick(self.found(text), Qt.LeftButton), lambda: self.found(then),
+            ready=lambda: self.found(text)), what='the button ' + then)
 
     def button(self, text):
         """Return a button of the tile, once it can be pressed."""

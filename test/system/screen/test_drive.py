@@ -17,8 +17,8 @@ from python_qt_binding.QtWidgets import QApplication, QWidget
 
 from mhri.base.reasons import STOPPED_ALONE
 from mhri.base.views import ROS_NO_MASTER
+from mhri.driving.gui.hands import Errand, Grip
 from mhri.screen.gui.tile_header import STOPPED
-from mhri.screen.presenters.demo import Grip
 from support.graph import SELECT
 from support.journals import Journal
 from support.keyboard import xdotool
@@ -32,7 +32,7 @@ DRIVE_S = float(os.environ.get('MHRI_DRIVE_S') or 3.0)
 
 def until(condition, what='the condition'):
     """Let Qt work until a condition comes true."""
-    return wait_for(lambda: (QApplication.processEvents(), condition())[-1], what=what)
+    return wait_for(condition, what=what, turn=QApplication.processEvents)
 
 
 class Session:
@@ -112,18 +112,13 @@ class Session:
         until(lambda: not self.presenter.windows[name].header.large, what='a small tile')
 
     def release(self):
-        """Give up stop-all as a person does: where the mux has not seen the stick let go, again."""
-        tried_at = [-10.0]
-
-        def released():
-            if not self.operator.view().stop_all:
-                return True
-            if time.monotonic() - tried_at[0] > 1.0 and self.widget('release_button').isEnabled():
-                tried_at[0] = time.monotonic()
-                self.click('release_button')
-                self.click('confirm_button')
-            return False
-        until(released, 'the release')
+        """Give up stop-all as a person does."""
+        def release():
+            self.click('release_button')
+            self.click('confirm_button')
+        # The mux may not have seen yet that the stick was let go.
+        until(Errand(release, lambda: not self.operator.view().stop_all, 1.0,
+                     self.widget('release_button').isEnabled), 'the release')
 
     def stop_one(self, name):
         """Stop one robot by the button in its tile."""

@@ -8,7 +8,7 @@ from python_qt_binding.QtCore import Qt
 from python_qt_binding.QtTest import QTest
 
 from mhri.base.views import PROOF_STOPPED
-from mhri.driving.gui.hands import CENTRE, Errand
+from mhri.driving.gui.hands import Errand, Grip
 from mhri.events.events import MARKED
 from mhri.screen.gui.stage import MAP_BESIDE
 from support import maps
@@ -47,23 +47,14 @@ class Operator:
         QTest.mouseClick(widget, Qt.LeftButton)
 
     def hold(self, key, condition, what):
-        """Hold a drive key until a condition comes true; where the mux waits, from neutral again.
-        """
+        """Hold a drive key until a condition comes true."""
         self.actions += 1
-        xdotool('keydown', key)
         try:
-            self.until(lambda: condition() or self._again(key), what)
+            self.until(Grip(lambda: xdotool('keydown', key), lambda: self.keyboard.release(key),
+                            lambda: self.backend.view().status, condition), what)
         finally:
             self.keyboard.release(key)
         self.until(lambda: not any(self.screen.stick()), 'the stick to be centred')
-
-    def _again(self, key):
-        """Let go and hold once more where a busy computer has lost something: not counted."""
-        if self.backend.view().status.endswith(CENTRE):
-            self.keyboard.release(key)
-            self.until(lambda: not self.backend.view().status.endswith(CENTRE), 'the mux')
-            xdotool('keydown', key)
-        return False
 
     @property
     def selected(self):

@@ -1,13 +1,12 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """A panel that is killed while a real key, pressed in the X server, drives two robots."""
-import contextlib
 import time
 
 import pytest
 
 from support.keyboard import xdotool
-from support.ros_system import System, wait_for
+from support.ros_system import insist, NotYet, System, wait_for
 from support.windows import windows_called
 
 pytestmark = pytest.mark.timed
@@ -32,14 +31,16 @@ def test_the_robots_stand_still_within_600_ms():
 
         def press():
             xdotool('windowfocus', '--sync', window, 'keydown', 'a')
-            with contextlib.suppress(AssertionError):
+            try:
                 return wait_for(lambda: all(robot.moving() and robot.latest().angular_rad_s > 1.0
-                                            for robot in robots), 5.0)
-            xdotool('keyup', 'a')
+                                            for robot in robots), 5.0, 'both robots to move')
+            except NotYet:
+                xdotool('keyup', 'a')
+                raise
 
         wait_for(lambda: all(robot.live() for robot in robots), what='the robots')
         # Let go, the key is left up until that has been read.
-        wait_for(press, what='the key to drive both robots', poll_s=0.5)
+        insist(press, 'the key to drive both robots', poll_s=0.5)
         since = time.monotonic()
         system.kill(panel, family=False)
         for name, took in seconds_to_standstill(robots, since).items():

@@ -14,6 +14,7 @@ from mhri.driving.gui.hands import CENTRE, READY
 from support.graph import STICK
 from support.keyboard import Keyboard, xdotool
 from support.panel_session import PanelSession
+from support.ros_system import insist
 
 pytestmark = pytest.mark.paired
 
@@ -68,17 +69,21 @@ class Forwarded(PanelSession):
         return since is not None and time.monotonic() - since > seconds
 
     def hold(self, press, let_go, alive=lambda: None):
-        """Drive for long; again where a busy computer held something up for as long as it may."""
-        def held():
-            if self.operator.view().status.endswith(CENTRE) \
-                    or not any(self.presenter.screen.stick()):
-                let_go()
-                self.until(lambda: self.operator.view().status.endswith(READY), what='the mux')
-                press()
-                self.until(lambda: any(self.presenter.screen.stick()), what='the stick')
+        """Drive for long."""
+        def is_lost():
             alive()
-            return self.held_for(2.5 * HELD_S) and self.robot.moving()
-        self.until(held, what='the stick to be held')
+            return self.operator.view().status.endswith(CENTRE) \
+                or not any(self.presenter.screen.stick())
+
+        def held():
+            let_go()
+            self.until(lambda: self.operator.view().status.endswith(READY), what='the mux')
+            press()
+            self.until(lambda: any(self.presenter.screen.stick()), what='the stick')
+            self.until(lambda: is_lost() or self.held_for(2.5 * HELD_S) and self.robot.moving(),
+                       what='the stick to be held')
+            return not is_lost()
+        insist(held, 'the stick to be held')
 
     def hold_keys(self, *keys):
         """Press keys one after the other, and hold them."""

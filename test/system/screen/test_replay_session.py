@@ -43,7 +43,7 @@ class Replay:
 
     def until(self, condition, what):
         """Let Qt work until a condition comes true."""
-        wait_for(lambda: (self.application.processEvents(), condition())[1], TIMEOUT_S, what)
+        wait_for(condition, TIMEOUT_S, what, turn=self.application.processEvents)
 
     def pause_at(self, position_s):
         """Pause by its key, and go somewhere by a click."""

@@ -5,6 +5,7 @@ import os
 
 import pytest
 
+from mhri.driving.gui.hands import Errand
 from support import graph
 from support.panel_session import PanelSession
 
@@ -116,10 +117,9 @@ def test_a_robot_that_is_removed_is_recorded_no_more_and_the_screen_says_so(sess
     undo = session.hands.widget('undo_button')
     session.until(undo.isVisible, what='Undo')
 
-    def is_back():
-        session.hands.click('undo_button')
-        return 'bot3' in session.operator.selection.robots
-    session.until(is_back, what='the robot to be back')
+    session.until(Errand(
+        lambda: session.hands.click('undo_button'),
+        lambda: 'bot3' in session.operator.selection.robots), what='the robot to be back')
     assert session.operator.selection.robots == tuple(ROBOTS), 'in its place'
     assert session.operator.selection.numbers.of('bot3') == 3
     assert 'bot3' not in session.operator.selection.selected

@@ -5,6 +5,7 @@
 
 The pictures are compared pixel by pixel with those that a camera in the same place would see.
 """
+import itertools
 import math
 import os
 import sys
@@ -31,7 +32,7 @@ from mhri.sim.plan import parse_plan  # noqa: E402
 from mhri.sim.tools import DIM, MAX_TILT_RAD, rows_of_tilt  # noqa: E402
 from support import graph  # noqa: E402
 from support.drive_case import DriveCase  # noqa: E402
-from support.ros_system import wait_for  # noqa: E402
+from support.ros_system import insist, NotYet, wait_for  # noqa: E402
 
 # Where the launch file puts the robot; the gas is 0.6 m ahead.
 POSE = (9.8, 7.4, 0.0)
@@ -103,40 +104,39 @@ class SimToolsTest(DriveCase):
         return self.reported(key)
 
     def use_until(self, key, choice, good=None):
-        """Ask for a choice until it is reported, or until something else is so.
-
-        Again, since this process may have stood still for longer than its lease.
-        """
+        """Ask for a choice until it is reported, or until something else is so."""
         def done():
-            if good() if good else self.reported(key).choice == choice:
-                return True
             self.use(key, choice)
-            return False
-        wait_for(done, TIMEOUT_S, lambda: '{} {}: {}'.format(key, choice, self.reported(key)), 0.5)
+            return wait_for(lambda: good() if good else self.reported(key).choice == choice, 5.0,
+                            lambda: '{} {}: {}'.format(key, choice, self.reported(key)))
+        insist(done, 'the use of ' + key)
 
     def stops_half_way(self, begin, place, ends, margin):
-        """Stop a motion before its end; again where this process stood still until it was there.
+        """Stop a motion before its end; return where that is.
 
         :param begin: function of one of the ends; begins to move there
         :param place: function that returns where it is
         """
-        for end in ends * 5:
-            start = place()
+        ends = itertools.cycle(ends)
+
+        def stopped():
+            start, end = place(), next(ends)
             begin(end)
-            wait_for(lambda start=start: abs(place() - start) > margin, TIMEOUT_S, 'a motion')
+            wait_for(lambda: abs(place() - start) > margin, TIMEOUT_S, 'a motion')
             self.operator.stop()
             self.held.clear()
             last = []
 
-            def rests(last=last):
+            def rests():
                 last.append(place())
                 return len(last) > 10 and len(set(last[-10:])) == 1
             wait_for(rests, TIMEOUT_S, 'it to rest', poll_s=0.1)
             if abs(last[-1] - end) > margin:
-                return last[-1]
+                return last[-1:]
             self.operator.release()
             self.ready('bot1')
-        self.fail('it was never stopped before its end')
+            raise NotYet('it was at its end')
+        return insist(stopped, 'a stop half way')[0]
 
     def hear(self, topic, kind):
         newest = Newest(topic, kind)

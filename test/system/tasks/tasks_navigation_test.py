@@ -22,16 +22,13 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..
 from support.rostest_tools import measured, moves, Process, rests  # noqa: E402
 from support.tasks_case import TIMEOUT_S, TasksCase  # noqa: E402
 from support.graph import navigation  # noqa: E402
-from support.ros_system import freeze, processes_with, wait_for  # noqa: E402
+from support.ros_system import freeze, insist, NotYet, processes_with, wait_for  # noqa: E402
 
 
 class TasksNavigation(TasksCase):
 
     def sent(self):
-        """Send the robot that has move_base somewhere; return the goal, once it is on its way.
-
-        Again where something came too late: on a busy machine that says nothing of the task.
-        """
+        """Send the robot that has move_base somewhere; return the goal, once it is on its way."""
         def on_its_way():
             begun = time.monotonic()
             goal = self.start('bot3', 'goto', '{x: 50.0, y: 1.0, frame: odom}')
@@ -41,10 +38,9 @@ class TasksNavigation(TasksCase):
                 self.commands['bot3'].wait(moves, begun, 60.0)
                 return goal
             ended = self.ends(goal)
-            print('again: {}'.format(ended))
             self.assertEqual(ended[0][0], TaskState.LOST, ended)
-            return None
-        return wait_for(on_its_way, what='its navigation to get a goal')
+            raise NotYet(str(ended))
+        return insist(on_its_way, 'its navigation to get a goal')
 
     def wait_still(self):
         """Wait until nothing but zeros has come for 0.6 s: a stopped robot may get many of them."""

@@ -34,7 +34,7 @@ from mhri.map.grid import grid_of  # noqa: E402
 from mhri.map.ros.map_source import grid_message, publish_map  # noqa: E402
 from mhri.msg import Places, TaskState  # noqa: E402
 from support.fake_mux import FakeOperator  # noqa: E402
-from support.ros_system import processes_with, wait_for  # noqa: E402
+from support.ros_system import insist, NotYet, processes_with, wait_for  # noqa: E402
 from support.rostest_tools import measured, moves, Process, Recorder, rests  # noqa: E402
 from support.tasks_case import TIMEOUT_S, TasksCase  # noqa: E402
 
@@ -55,10 +55,7 @@ class Tasks(TasksCase):
         return any(moves(item.value) for item in self.commands['bot1'].since(begun))
 
     def on_its_way(self):
-        """Start a robot on a long way and wait until it moves; return (goal, since when).
-
-        Again where it did not come to move: on a busy machine that says nothing of the task.
-        """
+        """Start a robot on a long way and wait until it moves; return (goal, since when)."""
         def moves_on():
             begun = time.monotonic()
             goal = self.start('bot1', 'goto', '{{x: {}, y: 2.0}}'.format(self.far_x()))
@@ -67,10 +64,9 @@ class Tasks(TasksCase):
             if goal.get_comm_state() != actionlib.CommState.DONE:
                 return goal, begun
             ended = self.ends(goal)
-            print('ended before it moved: {}'.format(ended))
             self.assertEqual(ended[0][0], TaskState.LOST, ended)
-            return None
-        return wait_for(moves_on, what='it to move')
+            raise NotYet(str(ended))
+        return insist(moves_on, 'it to move')
 
     def rests_for_good(self, robot, since):
         """Wait for silence after a zero; return how long after a time its last zeros began [s].
@@ -86,20 +82,18 @@ class Tasks(TasksCase):
         return last[0].at - since
 
     def said_at_its_end(self, start):
-        """Return what a program says that gives bot1 a task; it has to end well.
-
-        Again where something came too late: on a busy machine that says nothing of the task.
-        """
-        for _ in range(12):
+        """Return what a program says that gives bot1 a task; it has to end well."""
+        def in_time():
             # Away from everything.
             self.done('bot1', 'goto', '{x: 5.0, y: 2.0, speed: 0.6}')
             tool = start()
             self.addCleanup(tool.end)
             status, said = tool.wait(TIMEOUT_S), tool.said()
-            if not re.search('^bot1:? lost', said, re.M):
-                break
-        self.assertEqual(status, 0, said)
-        return said
+            if re.search('^bot1:? lost', said, re.M):
+                raise NotYet(said)
+            self.assertEqual(status, 0, said)
+            return said
+        return insist(in_time, 'the program to end its task')
 
     def test_the_terminal_drives_a_square_and_says_its_corners(self):
         said = self.said_at_its_end(lambda: task_tool('bot1', 'square', '0.4', 'speed=0.4'))
@@ -110,13 +104,14 @@ class Tasks(TasksCase):
         self.assertLess(float(errors.group(2)), 0.2, said)
 
     def test_ctrl_c_stops_the_robot(self):
-        for _ in range(12):
+        def on_its_way():
             begun = time.monotonic()
             tool = task_tool('bot1', 'goto', self.far_x(), 'y=2.0')
             self.addCleanup(tool.end)
-            wait_for(lambda: not tool.running() or self.moves_since(begun))
-            if 'bot1: lost: ' not in tool.said():
-                break
+            wait_for(lambda: not tool.running() or self.moves_since(begun),
+                     what=lambda: 'it to move: ' + tool.said())
+            return 'bot1: lost: ' not in tool.said() and tool
+        tool = insist(on_its_way, 'the terminal to drive it')
         ended = tool.send(signal.SIGINT)
         self.assertEqual(tool.wait(), 1)
         self.assertIn('bot1: stopped', tool.said())
@@ -290,8 +285,7 @@ class Tasks(TasksCase):
         self.assertLess(furthest, 3.6 - 0.15)
         # Without that map nothing is in its way.
         publisher.publish(grid_message(everywhere))
-        wait_for(lambda: self.ended('bot1', 'goto', there)[0][0] == TaskState.DONE,
-                 what='the map holds it still', timeout_s=TIMEOUT_S)
+        self.done('bot1', 'goto', there)
 
 
 if __name__ == '__main__':

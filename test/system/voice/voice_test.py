@@ -50,7 +50,7 @@ class Voice(VoiceTest):
         self._one_neutral(pulled, 'pulled to neutral Joy', 0.4)
         self.microphone.plug()
         begun = self.node.joys.wait(lambda value: True, pulled + 0.5, START_S).at
-        self.waits.settle('', START_S)
+        self.waits.settle('', patience_s=START_S)
         self.assertFalse([item for item in self.twists.since(begun) if moves(item.value)])
         self._drive('robot turn left', LEFT_TWIST)
         old, begun = self.node.listeners(), time.monotonic()
@@ -124,7 +124,7 @@ class Voice(VoiceTest):
         held.shutdown()
         push.unregister()
         self._said('robot use joystick')
-        self.modes.wait(lambda _: self.modes.last() == 'joy', patience_s=HEAR_S)
+        self.modes.wait_newest('joy', patience_s=HEAR_S)
         wait_for(lambda: not self.node.listeners(), what='still listens', timeout_s=HEAR_S)
 
 

@@ -12,7 +12,7 @@ import pytest
 
 from mhri.base.opencv import cv2
 from support.browser import browser
-from support.ros_system import free_port, System, wait_for
+from support.ros_system import free_port, insist, NotYet, System, wait_for
 
 RED, BLUE = (220, 30, 30), (30, 30, 220)
 NASTY = '<img src=x onerror="document.title=1">'
@@ -220,18 +220,18 @@ def test_a_finger_on_the_stick_drives_until_the_page_is_hidden(page, screen, giv
     mode.publish(source='web')
     page.wait('return document.getElementById("stick").dataset.is === "free"')
     x, y = page.middle('#pad')
-    touched = []
 
     def pushes():
-        """Press again if mhri has let go meanwhile, as it does on a slow network."""
-        if page.run('return document.getElementById("stick").dataset.is === "free"'):
-            if touched:
-                page.touch('touchEnd')
-            touched.append(True)
-            page.touch('touchStart', (x, y))
-            page.touch('touchMove', (x, y - 60))
-        return heard and heard[-1][1] > 0.5 and abs(heard[-1][0]) < 0.1
-    wait_for(pushes, what='a stick that goes ahead', poll_s=0.3)
+        page.touch('touchStart', (x, y))
+        page.touch('touchMove', (x, y - 60))
+        try:
+            return wait_for(lambda: heard and heard[-1][1] > 0.5 and abs(heard[-1][0]) < 0.1, 5.0,
+                            'a stick that goes ahead')
+        except NotYet:
+            # mhri has let go meanwhile, as it does on a slow network.
+            page.touch('touchEnd')
+            raise
+    insist(pushes, 'the finger to drive')
     tab = page.driver.current_window_handle
     page.driver.switch_to.new_window('tab')
     wait_for(lambda: not any(heard[-1]), what='a stick at its centre')

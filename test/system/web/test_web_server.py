@@ -17,7 +17,7 @@ import pytest
 from mhri.web.io.server import MAX_CONNECTIONS, MAX_OF_LINK
 from mhri.web.links import TRIES
 from support.paths import REPO
-from support.ros_system import wait_for
+from support.ros_system import insist, NotYet, wait_for
 from support.web_page import CENTRE, Page
 
 COUNT = 10000 if os.environ.get('MHRI_BENCH') == 'full' else 1000
@@ -66,16 +66,15 @@ def server():
 
 
 def holding(server, page):
-    """Let a page hold the stick out, again where a process stood still meanwhile."""
+    """Let a page hold the stick out."""
     def drives():
         page.stick = CENTRE
         page.send('hold', True)
-        with contextlib.suppress(AssertionError):
-            wait_for(page.holds, 5.0)
-            wait_for(lambda: CENTRE in server.ask()['sticks'], 5.0)
-            page.stick = HELD
-            return wait_for(lambda: HELD in server.ask()['sticks'], 5.0)
-    wait_for(drives, what=lambda: 'the stick: {}'.format(page.said['drive']))
+        wait_for(page.holds, 5.0, 'the hold')
+        wait_for(lambda: CENTRE in server.ask()['sticks'], 5.0, 'the stick at its centre')
+        page.stick = HELD
+        return wait_for(lambda: HELD in server.ask()['sticks'], 5.0, 'the stick')
+    insist(drives, lambda: 'the stick: {}'.format(page.said['drive']))
 
 
 @pytest.mark.parametrize('end', [
@@ -172,23 +171,19 @@ def closed(end):
 
 
 def crowd(server):
-    """Return more connections than there is room for, of which the last is refused.
-
-    Again where a process stood still until the first were too old.
-    """
+    """Return more connections than there is room for, of which the last is refused."""
     def made():
-        ends = [socket.create_connection(('127.0.0.1', server.port), 60.0)
-                for _ in range(MAX_CONNECTIONS + 100)]
-        for end in ends:
-            end.setblocking(False)
-        with contextlib.suppress(AssertionError):
-            wait_for(lambda: closed(ends[-1]), 5.0)
-            if not closed(ends[0]):
-                return ends
-        for end in ends:
-            end.close()
-        return None
-    return wait_for(made, what='a connection that is refused')
+        with contextlib.ExitStack() as stack:
+            ends = [stack.enter_context(socket.create_connection(
+                ('127.0.0.1', server.port), 60.0)) for _ in range(MAX_CONNECTIONS + 100)]
+            for end in ends:
+                end.setblocking(False)
+            wait_for(lambda: closed(ends[-1]), 5.0, 'the last to be refused')
+            if closed(ends[0]):
+                raise NotYet('the first is too old')
+            stack.pop_all()
+            return ends
+    return insist(made, 'a connection that is refused')
 
 
 def test_there_is_room_for_some_and_the_stick_goes_on(server):

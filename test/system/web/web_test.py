@@ -2,7 +2,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """The page drives a robot through the real mux: with a link to drive, and while it is held."""
-import contextlib
 import io
 import os
 import ssl
@@ -28,7 +27,7 @@ from mhri.srv import GiveLink, TakeLink  # noqa: E402
 from support import graph  # noqa: E402
 from support.drive_case import DriveCase  # noqa: E402
 from support.heard import Heard  # noqa: E402
-from support.ros_system import free_port, wait_for  # noqa: E402
+from support.ros_system import free_port, insist, wait_for  # noqa: E402
 from support.rostest_tools import measured, Process  # noqa: E402
 from support.velocity import VelocityEnd  # noqa: E402
 from support.web_page import AHEAD, CENTRE, Page  # noqa: E402
@@ -103,17 +102,16 @@ class WebTest(DriveCase):
         self.state.wait(lambda state: state.mode == mode, mode)
 
     def set_out(self, page):
-        """Drive by a page; again where it, the server or the mux stood still meanwhile."""
+        """Drive by a page."""
         def moved():
             page.stick = CENTRE
             page.send('hold', True)
-            with contextlib.suppress(AssertionError):
-                wait_for(page.holds, 5.0)
-                wait_for(lambda: not self.state.message.waits_for, 5.0)
-                page.stick = AHEAD
-                return wait_for(lambda: self.robot.end.moves(), 5.0)
-        wait_for(moved, what=lambda: 'motion: {}, {}'.format(page.said['drive'],
-                                                             self.state.message.waits_for))
+            wait_for(page.holds, 5.0, 'the hold')
+            self.state.wait(lambda state: not state.waits_for, 'the stick at its centre', 5.0)
+            page.stick = AHEAD
+            return wait_for(lambda: self.robot.end.moves(), 5.0, 'the robot')
+        insist(moved, lambda: 'motion: {}, {}'.format(page.said['drive'],
+                                                      self.state.message.waits_for))
 
     def stands(self, what, when):
         """Wait for the zero after an end, and that nothing follows while the stick is held out."""

@@ -102,12 +102,13 @@ class Grip:
         self._status = status
         self._condition = condition
         self._held = None
+        #: how often it was grabbed
+        self.times = 0
 
     def __call__(self):
         """Look, and return whether the condition is true."""
         if self._held is None:
-            self._held = True
-            self._take()
+            self._grab()
         if self._condition():
             return True
         status = self._status()
@@ -115,9 +116,13 @@ class Grip:
             self._held = False
             self._let_go()
         elif not self._held and status.endswith(READY):
-            self._held = True
-            self._take()
+            self._grab()
         return False
+
+    def _grab(self):
+        self._held = True
+        self.times += 1
+        self._take()
 
 
 class Errand:
@@ -126,19 +131,24 @@ class Errand:
     :param act: function that performs the action
     :param condition: function that returns whether to stop
     :param again_s: interval after which an operator would try again [s]
+    :param ready: function that returns whether the action can be performed now
     """
 
-    def __init__(self, act, condition, again_s=5.0):
+    def __init__(self, act, condition, again_s=5.0, ready=lambda: True):
         self._act = act
         self._condition = condition
         self._again_s = again_s
+        self._ready = ready
         self._done_s = -math.inf
+        #: how often it was performed
+        self.times = 0
 
     def __call__(self):
         """Look, and return whether the condition is true."""
         if self._condition():
             return True
-        if time.monotonic() - self._done_s > self._again_s:
+        if time.monotonic() - self._done_s > self._again_s and self._ready():
             self._done_s = time.monotonic()
+            self.times += 1
             self._act()
         return False
