@@ -4,8 +4,6 @@
 
 A robot is a subscriber of rospy as it is: it has neither guard nor watchdog.
 """
-import os
-import signal
 import threading
 import time
 
@@ -15,7 +13,7 @@ from sensor_msgs.msg import Joy
 from support import graph
 from support.fake_mux import FakeOperator, StateEar
 from support.journals import Journal
-from support.ros_system import children, freeze, wait_for
+from support.ros_system import children, wait_for
 from support.velocity import VelocityEnd
 
 
@@ -100,14 +98,14 @@ class World:
         """Wait until the next drive is there."""
         self.state.wait(lambda state: state.run != run, 'the next drive')
 
-    def hit(self, number):
-        """Send a signal to the moving drive; return (when, zeros of the robots, next drive [s])."""
+    def hit(self, hit):
+        """Hit the moving drive; return (when, zeros of the robots, next drive [s]).
+
+        :param hit: called with the number of its process
+        """
         drive, run = self.drive(), self.state.message.run
         since = time.monotonic()
-        if number == signal.SIGSTOP:
-            freeze(drive)
-        else:
-            os.kill(drive, number)
+        hit(drive)
         zeros = self.zeros(since)
         self.next(run)
         return since, zeros, time.monotonic() - since

@@ -13,7 +13,7 @@ import pytest
 
 from support import graph
 from support.journals import Journal
-from support.ros_system import freeze, System, wait_for
+from support.ros_system import freeze, insist, System, wait_for
 
 pytestmark = pytest.mark.timed
 
@@ -73,7 +73,7 @@ class Bench:
                 self.stick.drive(0.3, 0.5, moving, 60, 'the robots to be driven')
             time.sleep(0.3)
             return moving()
-        wait_for(steadily, 60, 'the robots to be driven')
+        insist(steadily, 'the robots to be driven')
 
     def close(self):
         import rospy
@@ -118,4 +118,5 @@ def test_the_panel_is_terminated(bench):
 
 
 def test_every_velocity_that_left_is_what_the_drive_says(bench):
+    bench.drive()
     bench.journal.conforms()

@@ -219,9 +219,12 @@ def test_services(fire):
 
 def test_anybody_may_take_control_and_nothing_moves_by_it(fire):
     import rospy
+    from mhri.msg import RobotSelect
     from std_srvs.srv import SetBool, Trigger
     fire.drive()
-    rospy.ServiceProxy(graph.TAKE_CONTROL, Trigger)()
+    # Who publishes no selection is refused.
+    rospy.Publisher(graph.SELECT, RobotSelect, queue_size=1)
+    wait_for(lambda: rospy.ServiceProxy(graph.TAKE_CONTROL, Trigger)().success, what='control')
     since = fire.stands()
     for _ in range(3):
         rospy.ServiceProxy(graph.TAKE_CONTROL, Trigger)()

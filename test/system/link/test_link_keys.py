@@ -238,6 +238,8 @@ def test_a_watching_key_sees_and_does_not_drive(lab):
 
 def test_one_host_at_a_time_and_the_other_asks_twice(lab):
     desk = lab.authority.put('desk')
+    lab.drive(lab.operator)
+    lab.let_stand(lab.operator)
     wait_for(lambda: lab.holder() == 'host:lab', LONG_S, 'lab to be in control')
     moved, _ = lab.attacked(desk, 'host:lab', 'host:desk', until=lambda: (
         'desk' in lab.states[-1].said), timeout_s=LONG_S)

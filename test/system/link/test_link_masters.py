@@ -5,6 +5,7 @@
 The cases are one evening in a lab and build on each other. ``MHRI_SEED`` repeats the orders of a
 run.
 """
+import collections
 import os
 import random
 import time
@@ -15,7 +16,7 @@ from support import graph
 from support import machines
 from support.hostile import is_long, seed_of
 from support.masters import KEPT, LONG_S, Masters, ROBOTS, ROUTED
-from support.ros_system import wait_for
+from support.ros_system import say_insisted, wait_for
 
 WHY_NOT = machines.why_not()
 pytestmark = [pytest.mark.paired, pytest.mark.skipif(WHY_NOT is not None, reason=str(WHY_NOT))]
@@ -54,13 +55,24 @@ def well(lab):
     return time.monotonic() - begun
 
 
-def test_they_are_found_and_look_like_any_robots(lab):
-    import rospy
+@pytest.fixture(scope='module')
+def found(lab):
+    """Look for the robots, as the screen does, until all are found; return what was found."""
     from mhri.robots.ros.graph_scan import look_for_robots, shipped_ignore_list
     well(lab)
-    found = wait_for(lambda: [one for one in [look_for_robots('/masters_test',
-                                                              shipped_ignore_list())]
-                              if len(one.live) == len(ROBOTS)], LONG_S, 'all to be found', 0.1)[0]
+    return wait_for(lambda: [one for one in [look_for_robots('/masters_test',
+                                                             shipped_ignore_list())]
+                             if len(one.live) == len(ROBOTS)], LONG_S, 'all to be found', 0.1)[0]
+
+
+@pytest.fixture(autouse=True)
+def at_start(lab, found):
+    """Have all robots found and well, whatever ran before."""
+    well(lab)
+
+
+def test_they_are_found_and_look_like_any_robots(found):
+    import rospy
     assert {robot.name for robot in found.live} == set(ROBOTS)
     assert [rospy.get_param('/{}/robot_type'.format(name)) for name in ROBOTS] == [
         row[0] for row in ROBOTS.values()]
@@ -74,13 +86,14 @@ def test_each_does_a_task_in_the_frame_that_they_share(lab):
     client = actionlib.ActionClient(graph.RUN_TASK, RunTaskAction)
     wait_for(lambda: client.wait_for_server(rospy.Duration(1.0)), LONG_S, 'the tasks')
     # A task is refused while tf has not said yet where a robot is.
-    left, results = list(ROBOTS), {}
+    left, results, sent = list(ROBOTS), {}, collections.Counter()
 
     def done():
         for name in list(left):
             handle = results.get(name)
             if handle is None:
                 y_m = ROBOTS[name][4]
+                sent[name] += 1
                 results[name] = client.send_goal(RunTaskGoal(
                     'goto', [name], '{{x: 5.3, y: {}, speed: 0.3}}'.format(y_m)))
             elif handle.get_comm_state() == actionlib.CommState.DONE:
@@ -92,6 +105,7 @@ def test_each_does_a_task_in_the_frame_that_they_share(lab):
                     results[name] = None
         return not left
     wait_for(done, LONG_S, lambda: 'the tasks of {}'.format(left), 0.5)
+    say_insisted(max(sent.values()), 'the tasks to be done')
     lab.operator.check(*ROBOTS)
 
 
@@ -113,7 +127,7 @@ def test_what_was_missed_is_fetched_when_the_link_is_back(lab):
     wait_for(lambda: lab.keeps('bot2'), LONG_S, 'bot2 to record', 0.1)
     lab.computers['bot2'].unplug()
     wait_for(lambda: lab.row('bot2') and lab.row('bot2').stands == 'not_heard', LONG_S,
-             'the mux to miss it')
+             lambda: 'the mux to miss it: {}'.format(lab.row('bot2')))
     begun = time.time()
     time.sleep(1.0)
     ended = time.time()
@@ -145,7 +159,7 @@ def test_a_cut_cable_stops_one_alone_and_nothing_is_made_up_for(lab, tmp_path):
     print('MEASURED cable cut: bot2 told to stand after {:.2f} s'.format(
         lab.stands_from('bot2', cut_at) - cut_at))
     wait_for(lambda: lab.row('bot2') and lab.row('bot2').stands == 'not_heard', LONG_S,
-             'the mux to miss it')
+             lambda: 'the mux to miss it: {}'.format(lab.row('bot2')))
     stood_at = time.monotonic()
     assert lab.turns('bot1') and lab.turns('bot3')
     lost = record.status().messages
@@ -224,6 +238,8 @@ def test_restarted_in_any_order_all_comes_back(lab):
 
 
 def test_no_old_command_was_obeyed_in_all_that_time(lab):
+    lab.drive()
+    lab.let_go()
     ages = lab.oldest()
     print('MEASURED oldest command to move that was obeyed [s]:', ages)
     assert max(ages.values()) < COMMAND_S + ANSWER_S

@@ -39,6 +39,25 @@ def operator(lab):
     rospy.signal_shutdown('done')
 
 
+@pytest.fixture(scope='module')
+def deployed(lab):
+    """Have the files on both robots; return what was said to the first with the link."""
+    said = lab.deploy('bot1', '--link')
+    status, output = lab.deploy('bot2')
+    assert status == 0, output
+    return said
+
+
+@pytest.fixture(scope='module')
+def started(lab, operator, deployed):
+    """Start bot1 on a master of its own; return its terminal."""
+    terminal = lab.connect('bot1', '--type', 'turtlebot2', '--link', '--keys', 'off')
+    wait_for(lambda: operator[1].live() or terminal.process.poll() is not None, START_S,
+             terminal.text, poll_s=0.1)
+    assert terminal.process.poll() is None, terminal.text()
+    return terminal
+
+
 def left(robot):
     """Return what of turtle_remote.sh's runs on a robot."""
     return [line for text in LEFT for line in robot.processes(text)]
@@ -53,16 +72,14 @@ def drive(operator):
     wait_for(witness.at_rest, LONG_S, 'bot1 to rest', poll_s=0.05)
 
 
-def test_link_is_sent_to_the_robot_once(lab):
-    status, output = lab.deploy('bot1', '--link')
+def test_link_is_sent_to_the_robot_once(lab, deployed):
+    status, output = deployed
     assert status == 0 and 'mhri_link.tar.gz' in output, output
     status, output = lab.deploy('bot1', '--link')
     assert status == 0 and 'nothing to send' in output, 'the same archive for the same files'
-    status, output = lab.deploy('bot2')
-    assert status == 0, output
 
 
-def test_robot_without_a_key_listens_to_nobody_unless_that_is_said(lab):
+def test_robot_without_a_key_listens_to_nobody_unless_that_is_said(lab, deployed):
     terminal = lab.connect('bot1', '--type', 'turtlebot2', '--link')
     assert terminal.process.wait(LONG_S) == 1
     wait_for(lambda: '--keys off' in terminal.text(), 10, 'the remedy')
@@ -70,27 +87,23 @@ def test_robot_without_a_key_listens_to_nobody_unless_that_is_said(lab):
     lab.terminals.remove(terminal)
 
 
-def test_robot_on_its_own_master_is_driven(lab, operator):
+def test_robot_on_its_own_master_is_driven(operator, started):
     import rosgraph
-    terminal = lab.connect('bot1', '--type', 'turtlebot2', '--link', '--keys', 'off')
-    wait_for(lambda: operator[1].live() or terminal.process.poll() is not None, START_S,
-             'bot1', poll_s=0.1)
-    assert terminal.process.poll() is None, terminal.text()
     drive(operator)
     nodes = {node for kind in rosgraph.Master('/lab').getSystemState() for _, users in kind
              for node in users if node.startswith('/bot1/')}
     assert nodes == {'/bot1/mhri_link'}, 'the rest is on the master of the robot'
-    assert 'ROS_IP=127.0.0.1' in terminal.text()
+    assert 'ROS_IP=127.0.0.1' in started.text()
 
 
-def test_link_that_is_killed_on_the_robot_is_back(lab, operator):
+def test_link_that_is_killed_on_the_robot_is_back(lab, operator, started):
     robot = lab.robots['bot1']
     robot.run('sh', '-c', 'kill -KILL $(pgrep -f "scripts/mhri_lin[k] --side robot")')
-    wait_for(lambda: 'mhri_link was killed' in lab.terminals[-1].text(), LONG_S, 'the word')
+    wait_for(lambda: 'mhri_link was killed' in started.text(), LONG_S, 'the word')
     drive(operator)
 
 
-def test_second_robot_of_the_name_is_refused_here(lab, operator):
+def test_second_robot_of_the_name_is_refused_here(lab, started):
     """Before anybody logs in to it."""
     logins = lab.robots['bot1'].logins()
     terminal = lab.connect('bot1', '--type', 'turtlebot2', '--link')
@@ -100,20 +113,19 @@ def test_second_robot_of_the_name_is_refused_here(lab, operator):
     lab.terminals.remove(terminal)
 
 
-def test_ctrl_c_ends_both_sides(lab, operator):
+def test_ctrl_c_ends_both_sides(lab, started):
     import rosgraph
-    terminal = lab.terminals[-1]
-    terminal.press(b'\x03')
-    assert terminal.process.wait(LONG_S) == 130, terminal.text()
+    started.press(b'\x03')
+    assert started.process.wait(LONG_S) == 130, started.text()
     wait_for(lambda: not left(lab.robots['bot1']), LONG_S,
              lambda: 'the robot to be quiet: {}'.format(left(lab.robots['bot1'])), poll_s=0.2)
     nodes = {node for kind in rosgraph.Master('/lab').getSystemState() for _, users in kind
              for node in users}
     assert '/bot1/mhri_link' not in nodes
-    assert 'had ended here' not in terminal.text()
+    assert 'had ended here' not in started.text()
 
 
-def test_router_between_two_that_do_not_reach_each_other(lab, operator):
+def test_router_between_two_that_do_not_reach_each_other(lab, operator, deployed):
     witness = operator[1]
     robot, between = lab.robots['bot1'], lab.robots['bot2']
     robot.run('ip', 'route', 'add', 'unreachable', machines.HOST_IP)

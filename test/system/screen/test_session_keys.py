@@ -12,6 +12,7 @@ import pytest
 from python_qt_binding.QtWidgets import QApplication, QWidget
 
 from mhri.base.reasons import Reason, STOPPED
+from mhri.driving.gui.hands import Errand
 from mhri.events.events import MARKED
 from mhri.recording.folder import marks_of, read_events
 from mhri.robots.gui.remove_steps import SETTLED_S
@@ -80,21 +81,17 @@ class Session:
 
     def until(self, condition, what, timeout_s=60.0):
         """Let Qt work until a condition comes true."""
-        return wait_for(lambda: (self.app.processEvents(), condition())[-1], timeout_s, what)
+        return wait_for(condition, timeout_s, what, turn=self.app.processEvents)
 
     def hold(self, key, condition, what):
         """Hold a key until a condition comes true; let go and hold it again now and then."""
-        pressed_at = [0.0]
-
-        def turn():
-            if time.monotonic() - pressed_at[0] > 4.0:
-                if pressed_at[0]:
-                    self.keyboard.release(key)
-                xdotool('keydown', key)
-                pressed_at[0] = time.monotonic()
-            return condition()
+        def press():
+            if pressing.times > 1:
+                self.keyboard.release(key)
+            xdotool('keydown', key)
+        pressing = Errand(press, condition, 4.0)
         try:
-            self.until(turn, what)
+            self.until(pressing, what)
         finally:
             self.keyboard.release(key)
         self.until(lambda: not any(self.screen.stick()), 'the stick to be centred')
@@ -155,11 +152,33 @@ def session():
     running.close()
 
 
+@pytest.fixture(autouse=True)
+def at_start(session):
+    """Look for robots, unless they were found, and select none, whatever ran before."""
+    if session.operator.selection.robots == ():
+        session.to_the_panel()
+        session.tab_to('look_button')
+        session.keyboard.press('Return')
+        session.until(lambda: session.operator.selection.robots == ROBOTS, 'what was found')
+    session.to_the_pictures()
+    # It selects all, and none where all are.
+    session.until(Errand(lambda: session.keyboard.press('0'), lambda: session.selected in (
+        (), ROBOTS), ready=lambda: session.selected not in ((), ROBOTS)), 'all or none')
+    if session.selected:
+        session.keyboard.press('0')
+        session.until(lambda: session.selected == (), 'none')
+
+
+@pytest.fixture
+def recorded(session, at_start):
+    """Record the session, as R does."""
+    if not session.button.isChecked():
+        session.keyboard.press('r')
+    session.until(session.button.isChecked, 'the button to say so')
+    session.until(lambda: 'start' in [event.kind for event in session.events()], 'the first line')
+
+
 def test_look(session):
-    session.to_the_panel()
-    session.tab_to('look_button')
-    session.keyboard.press('Return')
-    session.until(lambda: session.operator.selection.robots == ROBOTS, 'what was found')
     session.until(lambda: all(session.operator.robot_view(name).link == 'live'
                               for name in ROBOTS), 'two live robots')
     session.until(lambda: set(session.presenter.windows) == set(ROBOTS), 'the tiles')
@@ -271,6 +290,8 @@ def test_record(session):
 
 def test_stop_all_and_release(session):
     session.to_the_pictures()
+    session.keyboard.press('ctrl+1')
+    session.until(lambda: session.selected == ('bot1',), 'bot1 alone')
     session.keyboard.press('shift+space')
     session.until(lambda: all(robot.proof and robot.proof.state == 'stopped'
                               for robot in session.operator.view().robots), 'the proofs')
@@ -291,10 +312,6 @@ def test_stop_all_and_release(session):
 
 def test_r_records(session):
     session.to_the_pictures()
-    session.keyboard.press('0')
-    session.until(lambda: session.selected == ROBOTS, 'all')
-    session.keyboard.press('0')
-    session.until(lambda: session.selected == (), 'none')
     assert not session.button.isChecked()
     session.keyboard.press('r')
     session.until(session.button.isChecked, 'the button to say so')
@@ -304,7 +321,7 @@ def test_r_records(session):
                   'the first line')
 
 
-def test_n_marks_and_asks_what_is_here(session):
+def test_n_marks_and_asks_what_is_here(session, recorded):
     session.to_the_pictures()
     # Nothing is checked: keys do not drive, and the note has the keyboard at once.
     stop = session.screen.stop_bar.stop_button
@@ -334,7 +351,7 @@ def words_typed(session, words):
     session.until(lambda: not session.note.isVisible(), 'the note to go')
 
 
-def test_words_typed_after_n_command_nothing(session):
+def test_words_typed_after_n_command_nothing(session, recorded):
     import rospy
     from sensor_msgs.msg import Joy
     session.to_the_pictures()
@@ -352,9 +369,9 @@ def test_words_typed_after_n_command_nothing(session):
     subscriber.unregister()
 
 
-def test_while_keys_drive_only_n_again_opens_the_note(session):
+def test_while_keys_drive_only_n_again_opens_the_note(session, recorded):
     session.to_the_pictures()
-    session.keyboard.press('2')
+    session.keyboard.press('1')
     session.until(lambda: session.selected == ('bot1',), 'bot1 alone')
     session.until(lambda: session.operator.view().status.endswith('ready'), 'ready')
     marks = len(marks_of(session.events()))
@@ -376,11 +393,9 @@ def test_while_keys_drive_only_n_again_opens_the_note(session):
     session.until(lambda: not session.note.isVisible(), 'the note to go')
     session.until(lambda: marks_of(session.events())[-1].text == 'sand', 'the note at its mark')
     assert len(marks_of(session.events())) == marks + 1, 'N again is no other mark'
-    session.keyboard.press('1')
-    session.until(lambda: session.selected == (), 'none')
 
 
-def test_p_and_a_mark_keep_what_the_cameras_show(session):
+def test_p_and_a_mark_keep_what_the_cameras_show(session, recorded):
     session.to_the_pictures()
 
     def stills():
@@ -401,7 +416,7 @@ def test_p_and_a_mark_keep_what_the_cameras_show(session):
                          for name in names)
 
 
-def test_a_drill_is_on_the_screen_while_it_runs(session):
+def test_a_drill_is_on_the_screen_while_it_runs(session, recorded):
     from mhri.msg import DrillState
     import rospy
     referee = rospy.Publisher('/mhri_drill/state', DrillState, queue_size=1, latch=True)
@@ -430,7 +445,7 @@ def test_a_drill_is_on_the_screen_while_it_runs(session):
     referee.unregister()
 
 
-def test_a_recorder_that_is_killed_is_said(session):
+def test_a_recorder_that_is_killed_is_said(session, recorded):
     session.system.kill(session.recorder)
     session.until(lambda: any(event.kind == 'session.trouble'
                               for event in session.presenter.parts['events'].log.events),
@@ -442,7 +457,7 @@ def test_a_recorder_that_is_killed_is_said(session):
         'the recorder to go on')
 
 
-def test_r_ends_it(session):
+def test_r_ends_it(session, recorded):
     session.to_the_pictures()
     session.keyboard.press('r')
     session.until(lambda: not session.button.isChecked(), 'the button to say so')

@@ -3,15 +3,15 @@
 """A robot put on a task, taken over, and sent on, by clicks on the real screen with real nodes."""
 import pytest
 
-from mhri.base.gui.pending import Pace
+from mhri.driving.gui.hands import Errand
 from support.panel_session import PanelSession
+from support.ros_system import insist, NotYet
 
 pytestmark = pytest.mark.paired
 
 TIMEOUT_S = 120.0
 # What was refused, since a node was silent for a moment, is asked for again.
 AGAIN_S = 5.0
-# Says of bot2 what is not so, time and again.
 
 
 @pytest.fixture(scope='module')
@@ -43,13 +43,12 @@ def start(session, key, robot, **values):
     page.choose(key)
     for name, value in values.items():
         session.hands.widget('task_field_' + name, page).setValue(value)
-    before, again = len(texts(session, 'task.begun', robot)), Pace(AGAIN_S)
-
-    def begun():
-        if robot in page.who_label.text() and page.start_button.isEnabled() and again.due():
-            session.hands.click('task_start_button', page)
-        return len(texts(session, 'task.begun', robot)) > before
-    session.until(begun, TIMEOUT_S, 'the start')
+    before = len(texts(session, 'task.begun', robot))
+    session.until(Errand(
+        lambda: session.hands.click('task_start_button', page),
+        lambda: len(texts(session, 'task.begun', robot)) > before, AGAIN_S,
+        lambda: robot in page.who_label.text() and page.start_button.isEnabled()),
+        TIMEOUT_S, 'the start')
 
 
 def under_way(session, robot):
@@ -58,20 +57,20 @@ def under_way(session, robot):
     A computer that stalls for a moment loses the task: it is sent on, as an operator would.
     """
     row, tile = session.presenter.screen.robot_list.row(robot), session.presenter.windows[robot]
-    again = Pace(AGAIN_S)
 
     def goes():
-        if view(session, robot).task is None and view(session, robot).carry_on and again.due():
-            session.presenter.parts['tasks'].carry_on(robot)
         return (view(session, robot).obeys == 'task' and view(session, robot).driven
                 and row.task_pill.isVisibleTo(row) and tile.pill.word == 'ON TASK'
                 and row.trouble.text().startswith('square'))
-    session.until(goes, TIMEOUT_S, robot + ' on its task, and row and tile to say so')
+    session.until(Errand(
+        lambda: session.presenter.parts['tasks'].carry_on(robot), goes, AGAIN_S,
+        lambda: view(session, robot).task is None and view(session, robot).carry_on),
+        TIMEOUT_S, robot + ' on its task, and row and tile to say so')
 
 
 def end(session, robot, act, kind, undo=lambda: None):
-    """Do what ends a task, once more where it was lost before; return the text of its end."""
-    for _ in range(5):
+    """Do what ends a task; return the text of its end. Where the task was lost before, undo it."""
+    def ended_so():
         under_way(session, robot)
         lost, ended = len(texts(session, 'task.lost', robot)), len(texts(session, kind, robot))
         act()
@@ -80,7 +79,8 @@ def end(session, robot, act, kind, undo=lambda: None):
         if len(texts(session, kind, robot)) > ended:
             return texts(session, kind, robot)[-1]
         undo()
-    raise AssertionError('its task was lost again and again')
+        raise NotYet('its task was lost')
+    return insist(ended_so, kind)
 
 
 def check(session, robot, on):
@@ -97,17 +97,28 @@ def carry_on(session, robot):
     session.hands.click('carry_on_' + robot)
 
 
-def test_1_a_square_is_started_from_the_page(session):
+@pytest.fixture
+def on_a_square(session):
+    """Have bot1 on a square, unchecked and with nothing stopped, whatever ran before."""
     session.until(lambda: len(session.presenter.windows) == 2, TIMEOUT_S, 'the tiles')
-    start(session, 'square', 'bot1', side=1.0)
+    if session.operator.view().stop_all:
+        session.operator.release()
+        session.until(lambda: not session.operator.view().stop_all, TIMEOUT_S, 'the release')
+    if 'bot1' in session.operator.selection.selected:
+        check(session, 'bot1', False)
+    if view(session, 'bot1').task is None:
+        start(session, 'square', 'bot1', side=1.0)
     under_way(session, 'bot1')
+
+
+def test_a_square_is_started_from_the_page(session, on_a_square):
     session.until(lambda: 'square: corner ' in session.presenter.windows['bot1'].hud.sentence,
                   TIMEOUT_S, 'the tile to say how it is getting on')
     assert set(texts(session, 'task.begun', 'bot1')) == {'square started'}
     assert view(session, 'bot2').task is None
 
 
-def test_2_checking_it_takes_it_over(session):
+def test_checking_it_takes_it_over(session, on_a_square):
     words = end(session, 'bot1', lambda: check(session, 'bot1', True), 'task.taken_over',
                 lambda: check(session, 'bot1', False))
     assert words
@@ -115,7 +126,9 @@ def test_2_checking_it_takes_it_over(session):
     assert view(session, 'bot1').carry_on == ''
 
 
-def test_3_unchecked_it_stands_and_is_sent_on_by_one_click(session):
+def test_unchecked_it_stands_and_is_sent_on_by_one_click(session, on_a_square):
+    check(session, 'bot1', True)
+    session.until(lambda: view(session, 'bot1').task is None, TIMEOUT_S, 'the end of its task')
     check(session, 'bot1', False)
     session.until(lambda: view(session, 'bot1').carry_on == 'Square', TIMEOUT_S, 'the offer')
     session.until(lambda: session.presenter.windows['bot1'].header.carry_on_button.text()
@@ -126,7 +139,7 @@ def test_3_unchecked_it_stands_and_is_sent_on_by_one_click(session):
     assert len(texts(session, 'task.begun', 'bot1')) >= 1
 
 
-def test_4_stop_all_ends_it_and_nothing_resumes_by_itself(session):
+def test_stop_all_ends_it_and_nothing_resumes_by_itself(session, on_a_square):
     end(session, 'bot1', lambda: session.hands.click('stop_button'), 'task.stopped',
         session.operator.release)
     page = session.presenter.parts['tasks'].page
@@ -138,7 +151,7 @@ def test_4_stop_all_ends_it_and_nothing_resumes_by_itself(session):
     assert view(session, 'bot1').task is None and not view(session, 'bot1').driven
 
 
-def test_8_killed_the_program_of_the_tasks_is_missed_and_its_robots_are_lost(session):
+def test_killed_the_program_of_the_tasks_is_missed_and_its_robots_are_lost(session):
     start(session, 'square', 'bot2', side=1.0)
     under_way(session, 'bot2')
     lost = len(texts(session, 'task.lost', 'bot2'))

@@ -3,7 +3,7 @@
 """Host and two robots on computers of their own, for real: sshd, deployed files, driven, link cut.
 
 The computers are network namespaces (``support/machines.py``); a robot's own packages are stand-ins
-that start simulated robots. The tests are the steps of one day in a lab and build on each other.
+that start simulated robots. The tests are the steps of one day in a lab; each also works alone.
 """
 import math
 import os
@@ -22,6 +22,7 @@ WHY_NOT = machines.why_not()
 pytestmark = [pytest.mark.timed, pytest.mark.skipif(WHY_NOT is not None, reason=str(WHY_NOT))]
 
 REMOTE = REPO / 'utils' / 'remote'
+KINDS = {'bot1': ('--type', 'turtlebot2'), 'bot2': ('--type', 'turtlebot3', '--no-guard')}
 # What a robot needs to stand still, at most: the smoother's 0.5 s of patience and its ramp, or the
 # watchdog's 0.5 s; the rest is for a machine under load.
 STOP_S = {'bot1': 1.5, 'bot2': 1.0}
@@ -46,6 +47,35 @@ def operator(lab):
     built.close()
 
 
+@pytest.fixture(scope='module')
+def trusted(lab):
+    """Have the operator know the robots' keys."""
+    for robot in lab.robots.values():
+        lab.trust(robot)
+
+
+@pytest.fixture(scope='module')
+def deployed(lab, trusted):
+    """Have the files on the robots that have none yet."""
+    for name, robot in lab.robots.items():
+        if not (robot.home / 'mhri' / 'turtle_remote.sh').exists():
+            status, output = lab.deploy(name)
+            assert status == 0, output
+
+
+@pytest.fixture(scope='module')
+def started(lab, operator, deployed):
+    """Start both robots; return {name: terminal}."""
+    terminals = {name: lab.connect(name, *words) for name, words in KINDS.items()}
+    end = time.monotonic() + START_S
+    while not all(witness.live() for witness in operator.witnesses.values()):
+        for terminal in terminals.values():
+            assert terminal.process.poll() is None, terminal.text()
+        assert time.monotonic() < end, [terminal.text() for terminal in terminals.values()]
+        time.sleep(0.1)
+    return terminals
+
+
 def test_robot_with_an_unknown_key_is_not_trusted(lab):
     status, output = lab.deploy('bot1')
     assert status == 1 and 'compare its key' in output
@@ -63,15 +93,13 @@ def test_robot_with_another_key_than_before_is_not_trusted(lab):
     lab.known_hosts.write_text('')
 
 
-def test_connecting_before_deploying_says_what_to_do(lab):
-    for robot in lab.robots.values():
-        lab.trust(robot)
+def test_connecting_before_deploying_says_what_to_do(lab, trusted):
     terminal = lab.connect('bot1')
     assert terminal.process.wait(LONG_S) == 1
     wait_for(lambda: 'run turtlebot_deploy.sh turtle@10.77.0.11' in terminal.text(), 10, 'the word')
 
 
-def test_deployment_asks_for_one_password(lab):
+def test_deployment_asks_for_one_password(lab, trusted):
     robot = lab.robots['bot1']
     (lab.folder / 'id').rename(lab.folder / 'put_away')
     before = robot.logins()
@@ -90,7 +118,7 @@ def test_deployment_asks_for_one_password(lab):
     assert os.access(str(robot.home / 'mhri' / 'turtle_remote.sh'), os.X_OK)
 
 
-def test_a_robot_that_cannot_take_the_files_is_said(lab):
+def test_a_robot_that_cannot_take_the_files_is_said(lab, trusted):
     robot = lab.robots['bot2']
     (robot.home / 'mhri').write_text('a file where the folder should be')
     status, output = lab.deploy('bot2')
@@ -106,25 +134,18 @@ def test_a_robot_that_cannot_take_the_files_is_said(lab):
     assert status == 0, output
 
 
-def test_both_robots_are_started_found_and_driven(lab, operator):
+def test_both_robots_are_started_found_and_driven(lab, operator, started):
     from mhri.robots.ros.graph_scan import look_for_robots, shipped_ignore_list
-    lab.connect('bot1', '--type', 'turtlebot2')
-    lab.connect('bot2', '--type', 'turtlebot3', '--no-guard')
-    end = time.monotonic() + START_S
-    while not all(witness.live() for witness in operator.witnesses.values()):
-        for terminal in lab.terminals[-2:]:
-            assert terminal.process.poll() is None, terminal.text()
-        assert time.monotonic() < end, [terminal.text() for terminal in lab.terminals[-2:]]
-        time.sleep(0.1)
-    for terminal, robot in zip(lab.terminals[-2:], lab.robots.values()):
-        assert 'ROS_IP={}'.format(robot.ip) in terminal.text(), 'not that of its other network'
+    for name, terminal in started.items():
+        assert 'ROS_IP={}'.format(lab.robots[name].ip) in terminal.text(), \
+            'not that of its other network'
     assert 'model:=burger' in ' '.join(lab.robots['bot2'].processes('mhri_turtlebot3.launch'))
     found = look_for_robots('/lab', shipped_ignore_list())
     assert {'bot1', 'bot2'} <= {getattr(robot, 'name', robot) for robot in found.live}
     operator.drive('bot1', 'bot2')
 
 
-def test_camera_is_seen_on_the_host(lab, operator):
+def test_camera_is_seen_on_the_host(lab, started):
     import rosgraph
     import rospy
     from sensor_msgs.msg import Image
@@ -196,7 +217,7 @@ def say_latencies(name, when, times):
 
 
 @pytest.mark.parametrize('name, other', [('bot1', 'bot2'), ('bot2', 'bot1')])
-def test_robot_stops_without_its_link_and_is_usable_with_it(lab, operator, name, other):
+def test_robot_stops_without_its_link_and_is_usable_with_it(lab, operator, started, name, other):
     robot = lab.robots[name]
     rows, others = lab.observer(name), lab.observer(other)
     operator.drive(name, other)
@@ -229,13 +250,13 @@ def test_robot_stops_without_its_link_and_is_usable_with_it(lab, operator, name,
     assert stopped < STOP_S[name]
     assert strayed < STRAYED_M[name], 'a stale command moved it'
     assert during[len(during) // 2] < 50.0, other + ' goes by the stick as before'
-    assert all(terminal.process.poll() is None for terminal in lab.terminals[-2:])
+    assert all(terminal.process.poll() is None for terminal in started.values())
     operator.stick.hold(0.0, 0.0)
     wait_for(operator.witnesses[name].at_rest, 20, name + ' to rest', poll_s=0.05)
 
 
 @pytest.mark.parametrize('outage_s', [0.4, 2.0])
-def test_what_an_outage_brings_back_moves_nothing(lab, operator, outage_s):
+def test_what_an_outage_brings_back_moves_nothing(lab, operator, started, outage_s):
     """A stick that is held through it, too: let go where the outage is too short to be noticed.
 
     Both robots lose their links at once.
@@ -278,7 +299,7 @@ def test_what_an_outage_brings_back_moves_nothing(lab, operator, outage_s):
         wait_for(operator.witnesses[name].at_rest, 20, name + ' to rest', poll_s=0.05)
 
 
-def test_second_robot_of_a_name_is_refused(lab, operator):
+def test_second_robot_of_a_name_is_refused(lab, operator, started):
     terminal = lab.connect('bot2', '--type', 'turtlebot3')
     assert terminal.process.wait(LONG_S) == 1
     wait_for(lambda: 'bot2 already runs' in terminal.text(), 10, 'the word')
@@ -302,35 +323,32 @@ def left(robot):
 
 def await_quiet(robot):
     """Wait until nothing of turtle_remote.sh's runs on a robot any more."""
-    try:
-        wait_for(lambda: not left(robot), LONG_S, 'the robot to be quiet', poll_s=0.2)
-    except AssertionError:
-        print('left: ' + '\n'.join(left(robot)))
-        raise
+    wait_for(lambda: not left(robot), LONG_S, lambda: 'the robot to be quiet; left: ' + '\n'.join(
+        left(robot)), poll_s=0.2)
 
 
-def test_ctrl_c_on_the_host_ends_the_robot(lab, operator):
-    terminal = lab.terminals[-2]
+def test_ctrl_c_on_the_host_ends_the_robot(lab, started):
+    terminal = started['bot1']
     assert left(lab.robots['bot1'])
     terminal.press(b'\x03')
     assert terminal.process.wait(LONG_S) == 130, terminal.text()
     await_quiet(lab.robots['bot1'])
 
 
-def test_end_of_the_hosts_terminal_ends_the_robot(lab, operator):
-    terminal = lab.terminals[-1]
+def test_end_of_the_hosts_terminal_ends_the_robot(lab, started):
+    terminal = started['bot2']
     assert left(lab.robots['bot2'])
     terminal.close()
     await_quiet(lab.robots['bot2'])
 
 
-def test_address_that_the_host_does_not_reach_is_said(lab, operator):
+def test_address_that_the_host_does_not_reach_is_said(lab, operator, deployed):
     terminal = lab.connect('bot2', '--type', 'turtlebot3', '--ip', '172.30.12.5')
     assert terminal.process.wait(LONG_S) == 1
     wait_for(lambda: ' at 172.30.12.5' in terminal.text(), 10, 'the word')
 
 
-def test_robot_without_a_link_says_so(lab, operator):
+def test_robot_without_a_link_says_so(lab, operator, deployed):
     robot = lab.robots['bot2']
     robot.unplug()
     done = subprocess.run(

@@ -10,7 +10,7 @@ import pytest
 from support import graph
 from support.headset import Headset, LONG_S
 from support.paths import RESOURCE
-from support.ros_system import System, wait_for
+from support.ros_system import insist, System, wait_for
 
 pytestmark = pytest.mark.timed
 
@@ -102,24 +102,22 @@ class Site:
     def drive(self):
         """Close the grip and push the stick until the robot is told to move.
 
-        Where frames come too slowly the page loses the stick: the grip is closed again.
+        Where frames come too slowly the page loses the stick.
         """
-        again = 0.0
-
-        def pushed():
-            nonlocal again
+        def moves():
             if self.headset.run('const {store} = await import("/store.js");'
                                 'return store.drive.you'):
                 waits = self.state.waits_for or self.robot().stands
                 self.headset.hold(True, ahead=0.0 if waits else 1.0)
-            elif time.monotonic() > again:
-                self.headset.hold(False)
-                self.frames(2)
-                self.headset.hold(True)
-                again = time.monotonic() + 3.0
             return any(speed > 0.05 for speed in self.speeds)
+
+        def pushed():
+            self.headset.hold(False)
+            self.frames(2)
+            self.headset.hold(True)
+            return wait_for(moves, 9.0, lambda: 'the robot: ' + self.state.waits_for, poll_s=0.1)
         self.speeds.clear()
-        wait_for(pushed, LONG_S, lambda: 'the robot to move: ' + self.state.waits_for, poll_s=0.1)
+        insist(pushed, 'the grip to drive', LONG_S)
 
     def frames(self, count):
         """Wait for so many more frames."""
@@ -155,10 +153,16 @@ def percentile(values):
     return 1000.0 * float(np.percentile(values, 95))
 
 
-def test_each_eye_has_its_own_picture_and_the_head_looks_around_it(site):
-    headset = site.headset
-    headset.wear(site.link('drive') + '?demo')
-    headset.run(TWO_CAMERAS)
+@pytest.fixture(scope='module')
+def two_cameras(site):
+    """Wear the headset, which shows a robot with two cameras."""
+    site.headset.wear(site.link('drive') + '?demo')
+    site.headset.run(TWO_CAMERAS)
+    return site.headset
+
+
+def test_each_eye_has_its_own_picture_and_the_head_looks_around_it(two_cameras):
+    headset = two_cameras
 
     def eyes():
         left, right = headset.pixels(CENTRE)
@@ -171,10 +175,10 @@ def test_each_eye_has_its_own_picture_and_the_head_looks_around_it(site):
     wait_for(eyes, LONG_S, 'the picture to be where it was', poll_s=0.05)
 
 
-def test_the_edge_is_dark_while_the_robot_turns(site):
+def test_the_edge_is_dark_while_the_robot_turns(two_cameras):
     def edge():
         return headset.pixels(CORNER)[0][0]
-    headset = site.headset
+    headset = two_cameras
     before = wait_for(edge, LONG_S, 'the edge of the picture')
     headset.run('turning(1)')
     wait_for(lambda: edge() < 0.9 * before, LONG_S, 'a dark edge', poll_s=0.05)
