@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Registers publishers again to which nodes that should subscribe them have not connected."""
+"""Announces topics again to nodes that should subscribe them but have not connected."""
 import time
 
 import rospy
