@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Two programs of one name on the link: the first is linked until it is gone, and both say so."""
 import collections
+import queue
+import threading
 
 import pytest
 
@@ -11,11 +13,32 @@ from support.ros_system import wait_for
 
 
 class Air:
-    """Carries messages at once; whoever is in ``cut`` is neither heard nor hears."""
+    """Carries messages in order; whoever is in ``cut`` is neither heard nor hears.
+
+    It does so on a thread of its own, as a network does: two ends that send at the same moment
+    would wait for each other's lock.
+    """
 
     def __init__(self):
         self.cut = set()
         self._ends = collections.defaultdict(list)
+        self._sent = queue.Queue()
+        threading.Thread(target=self._carry, daemon=True).start()
+
+    def _carry(self):
+        for name, way, topic, data in iter(self._sent.get, None):
+            for other, call in self._ends[way]:
+                if not self.cut & {name, other}:
+                    call(topic, data)
+            self._sent.task_done()
+
+    def wait(self):
+        """Wait until what was sent has arrived."""
+        wait_for(lambda: not self._sent.unfinished_tasks, what='the messages to arrive')
+
+    def end(self):
+        """Carry nothing more."""
+        self._sent.put(None)
 
     def between(self, name):
         """Return the carrier of one end."""
@@ -28,8 +51,7 @@ class Air:
 
             def sender(self, way, topic, _):
                 """Return the function that sends a stream."""
-                return lambda data: [call(topic, data) for other, call in air._ends[way]
-                                     if not air.cut & {name, other}]
+                return lambda data: air._sent.put((name, way, topic, data))
         return Between()
 
 
@@ -88,6 +110,7 @@ def test_the_first_is_linked_until_it_is_gone(way, back):
                  what='both to know of the second')
         for end in (second, first):
             end.send('command', COMMAND, end.name.encode())
+        air.wait()
         assert other.taken == [b'first']
         air.cut.add('first')
         wait_for(lambda: second.linked() == other.linked() == (True, False), what='the second')
@@ -96,7 +119,9 @@ def test_the_first_is_linked_until_it_is_gone(way, back):
         other.taken.clear()
         for end in (first, second):
             end.send('command', COMMAND, end.name.encode())
+        air.wait()
         assert other.taken == [b'second']
     finally:
         for end in (other, first, second):
             end.over = True
+        air.end()
