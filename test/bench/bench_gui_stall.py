@@ -172,7 +172,7 @@ def main():
         print(HEAD)
         measurement.drive()
         measurement.find(rospy.get_node_uri(), 10 if options.short else 100)
-        measurement.presenter.close()
+        measurement.close()
         rospy.signal_shutdown('measured')
 
 

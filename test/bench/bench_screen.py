@@ -145,7 +145,7 @@ def main():
         screen.measure_keys(1 if short else 60)
         screen.presenter.screen.hide()
         screen.measure('nobody can see it', seconds)
-        screen.presenter.close()
+        screen.close()
         rospy.signal_shutdown('measured')
         system.kill(player)
 

@@ -37,3 +37,10 @@ class LiveScreen:
         from python_qt_binding.QtCore import QTimer
         QTimer.singleShot(round(seconds * 1000), self._app.quit)
         self._app.exec_()
+
+    def close(self):
+        """Close it; delete every widget before the application: Python's own order may crash."""
+        from python_qt_binding.QtCore import QEvent
+        self.presenter.close()
+        self.presenter.screen.deleteLater()
+        self._app.sendPostedEvents(None, QEvent.DeferredDelete)
