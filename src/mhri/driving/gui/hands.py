@@ -12,6 +12,8 @@ from mhri.base.reasons import JOINING, Reason
 
 # Endings of the status line.
 CENTRE, READY = Reason(JOINING).what, 'ready'
+# After how long an operator grabs again what has no effect [s].
+AGAIN_S = 1.0
 
 
 class DemoFailed(Exception):
@@ -88,20 +90,26 @@ class Grip:
     """Holds something (stick or key) until a condition is true.
 
     If the mux requires a centred stick meanwhile (a computer that stalled for half a second looks
-    like a silent source), it releases the stick and grabs it again, as an operator would.
+    like a silent source), it releases the stick and grabs it again, as an operator would. It also
+    does so if the mux has been ready for a second and nothing has come of it: the screen centres
+    the stick when the drive has been restarted.
 
     :param take: function that grabs it
     :param let_go: function that releases it
     :param status: function that returns the panel's status line
     :param condition: function that returns whether to stop waiting
+    :param clock: seconds, monotonic
     """
 
-    def __init__(self, take, let_go, status, condition):
+    def __init__(self, take, let_go, status, condition, clock=time.monotonic):
         self._take = take
         self._let_go = let_go
         self._status = status
         self._condition = condition
+        self._clock = clock
         self._held = None
+        # When it was grabbed, or the mux was last not ready.
+        self._since_s = -math.inf
         #: how often it was grabbed
         self.times = 0
 
@@ -112,7 +120,9 @@ class Grip:
         if self._condition():
             return True
         status = self._status()
-        if self._held and status.endswith(CENTRE):
+        if not status.endswith(READY):
+            self._since_s = self._clock()
+        if self._held and (status.endswith(CENTRE) or self._clock() - self._since_s > AGAIN_S):
             self._held = False
             self._let_go()
         elif not self._held and status.endswith(READY):
@@ -121,6 +131,7 @@ class Grip:
 
     def _grab(self):
         self._held = True
+        self._since_s = self._clock()
         self.times += 1
         self._take()
 
