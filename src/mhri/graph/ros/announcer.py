@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Announces topics again to nodes that should subscribe them but have not connected."""
+"""Announces topics again to nodes that should subscribe to them but have not connected."""
 import time
 
 import rospy
@@ -12,13 +12,14 @@ ANNOUNCE_S = 5.0
 
 
 class Announcer:
-    """Has the master announce a topic again while a present node should subscribe it but does not.
+    """Has the master announce a topic again while a present node should subscribe but does not.
 
     The master announces a publisher only once. A node that hung or was out of reach at that moment
-    never connects, nor does a rospy node whose connection ended during the handshake, e.g. since it
-    connected twice: rospy does not try again.
+    never connects, nor does a rospy node whose connection ended during the handshake, e.g. because
+    it connected twice: rospy does not try again.
 
-    :param unheard: returns a list of (topic, type) that present nodes should subscribe but do not
+    :param unheard: returns a list of (topic, type), those that present nodes should subscribe to
+        but do not
     :param clock: seconds, monotonic
     """
 

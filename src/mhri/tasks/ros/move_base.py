@@ -95,7 +95,7 @@ class MoveBase(Errand):
         return self._clock() - self._heard_at < SILENT_S
 
     def unheard(self):
-        """Return (topic, type) of each topic that it should subscribe but does not."""
+        """Return (topic, type) of each topic that it should subscribe to but does not."""
         mux = {self._mux()}
         return [(publisher.resolved_name, publisher.type)
                 for publisher in (self._goal, self._cancel)
