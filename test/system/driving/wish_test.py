@@ -109,7 +109,7 @@ class WishTest(DriveCase):
         self.assertLessEqual(max(entry[1] for entry in self.end.after(when)), 0.1)
         self.select_anew(self.ours)
         self.pushed(TYPE_MPS)
-        self.assertEqual(self.state.robot(self.ours).stands, '')
+        self.wait_robot(self.ours, lambda robot: robot.stands == '', 'no reason to stand')
 
 
 if __name__ == '__main__':
