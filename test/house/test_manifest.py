@@ -30,7 +30,8 @@ USED = {
     'libturbojpeg': 'loaded with ctypes', 'message_runtime': 'our messages',
     'openssl': 'makes keys',
     'roslaunch': 'starts everything', 'rqt_gui': 'the window of the panel'}
-TOOLS = {'ffmpeg': 'counts the pictures of a film',
+TOOLS = {'python3-pytest-timeout': 'ends a test that hangs',
+         'ffmpeg': 'counts the pictures of a film',
          'python3-flake8': 'the linter', 'rosnode': 'a command',
          'rosparam': 'a command', 'rostest': 'runs them', 'rostopic': 'a command',
          'topic_tools': 'a relay'}

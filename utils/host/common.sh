@@ -37,15 +37,17 @@ DEBIAN_RUN=(
   xvfb xauth hostname util-linux
 )
 DEBIAN_TEST=(
-  librostest-dev python3-rostest python3-roslib topic-tools python3-pytest python3-flake8
+  librostest-dev python3-rostest python3-roslib topic-tools python3-pytest python3-pytest-timeout
+  python3-flake8
   python3-flake8-docstrings python3-pip python3-psutil python3-rosdep2 catkin-lint shellcheck mkdocs
   xdotool imagemagick x11-utils git procps espeak-ng sox ffmpeg openssh-server iproute2 nftables
   chromium chromium-driver python3-selenium
 )
-# Only for the fast group of tests; Ubuntu uses the same names.
+# Only for the fast group of tests; most have the same names on Ubuntu.
 FAST=(
   python3-catkin-pkg python3-evdev python3-flake8 python3-numpy python3-opencv
-  python3-pip python3-pytest python3-rospkg python3-yaml util-linux
+  python3-pip python3-psutil python3-pyaudio python3-pytest python3-pytest-timeout python3-rospkg
+  python3-yaml util-linux
 )
 # On Ubuntu rosdep reads the ROS packages from package.xml; these have no key there.
 UBUNTU_RUN=(
@@ -53,7 +55,7 @@ UBUNTU_RUN=(
   openssh-client
 )
 UBUNTU_TEST=(
-  python3-pytest python3-flake8 python3-pip python3-psutil python3-catkin-lint
+  python3-pytest python3-pytest-timeout python3-flake8 python3-pip python3-psutil python3-catkin-lint
   shellcheck mkdocs xdotool imagemagick x11-utils git procps espeak-ng sox ffmpeg openssh-server
   iproute2 nftables
 )
@@ -132,7 +134,10 @@ install_missing() {
   family=$(os_family)
   if [ "$1" = fast ]; then
     PACKAGES=("${FAST[@]}")
-    if [ "$family" = debian ]; then PACKAGES+=(python3-flake8-docstrings); fi
+    case "$family" in
+      debian) PACKAGES+=(python3-flake8-docstrings libturbojpeg0) ;;
+      ubuntu) PACKAGES+=(libturbojpeg) ;;
+    esac
     install_packages "${PACKAGES[@]}"
     return
   fi

@@ -24,8 +24,9 @@ install_tools() {
 
 # has_fast: true if python3 has what the fast tests import.
 has_fast() {
-  PYTHONPATH="$WS/tools" python3 -c 'import catkin_pkg, cv2, evdev, flake8, flake8_docstrings
-import numpy, pyaudio, pytest, rospkg, yaml' 2>/dev/null
+  PYTHONPATH="$WS/tools" python3 -c 'import catkin_pkg, ctypes, cv2, evdev, flake8, flake8_docstrings
+import numpy, psutil, pyaudio, pytest, pytest_timeout, rospkg, yaml
+ctypes.CDLL("libturbojpeg.so.0")' 2>/dev/null
 }
 
 stop() {
