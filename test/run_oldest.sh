@@ -1,16 +1,13 @@
 #!/usr/bin/env bash
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-# Unit and widget tests, and what carries the link, with the oldest libraries that mhri supports, in an
-# environment that is made in build/.ws/oldest. Usage: run_oldest.sh unit|widgets|link FOLDER, which gets
-# the result file. Where there is no Python 3.8, or pip cannot fetch the libraries, the result is a
-# skipped test that says so.
+# Pure and widget tests, and what carries the link, with the oldest libraries that mhri supports, in an
+# environment that is made in build/.ws/oldest. Usage: run_oldest.sh RESULT.xml. Where there is no Python 3.8,
+# or pip cannot fetch the libraries, the result is a skipped test that says so.
 set -uo pipefail
 
 REPO=$(cd -P "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/.." && pwd)
-KIND=${1:?which tests, unit, widgets or link}
-RESULTS=${2:?where does the result file go}
-XML="$RESULTS/pytest-oldest-$KIND.xml"
+XML=${1:?where does the result go}
 WANTED="$REPO/test/requirements_oldest.txt"
 HOME_OF_IT="$REPO/build/.ws/oldest"
 # PyPI has neither pocketsphinx nor PyAudio in a form that installs without their C libraries.
@@ -56,32 +53,21 @@ print(os.path.dirname(python_qt_binding.__file__))') || return
 }
 
 cd "$REPO" || exit
-mkdir -p "$RESULTS" "${HOME_OF_IT%/*}" || exit
-exec 9>"$HOME_OF_IT.lock"
-flock 9
 if ! cmp -s "$WANTED" "$HOME_OF_IT/installed"; then
   PYTHON=$(find_python) || skip 'there is no Python 3.8 here (python3.8 on the path, or of pyenv)'
   make_environment "$PYTHON" || skip 'pip could not install what is in test/requirements_oldest.txt'
 fi
-exec 9>&-
-if [ "$KIND" = unit ]; then
-  # What is in test/house reads the sources, and the searches for states and arrangements and the
-  # simulated drills, radios and cameras use no library: they find the same whatever the versions.
-  # pytest ignores no file that it is given by name.
-  GLOBIGNORE='test/house/*:test/scripts/*:test/voice/test_speech_audio.py:test/driving/test_every_state*'
-  GLOBIGNORE+=':test/drill/test_drill_rehearsal.py:test/link/test_link_radio.py:test/link/test_link_rate.py'
-  GLOBIGNORE+=':test/screen/test_arrangement.py:test/camera/test_camera_budget.py'
-  TESTS=("${LEFT_OUT[@]}" test/*/test_*.py)
-elif [ "$KIND" = link ]; then
-  # mhri_test.sh has installed it there; its one build is for Python 3.8 and all later ones.
-  [ -d build/.ws/link/zenoh ] || skip 'the library zenoh is not in build/.ws/link'
-  TESTS=(test/link/ros/test_carrier.py test/link/ros/test_datagrams.py)
-else
-  # support/qt.py starts a screen for them alone.
-  unset DISPLAY XAUTHORITY
-  TESTS=(test/*/gui/test_widgets_*.py)
-fi
-# Nothing of a workspace or of ROS is on the path.
-PYTHONPATH="$REPO/src" ROS_PACKAGE_PATH="$REPO" "$HOME_OF_IT/bin/python" -m pytest \
-  -p no:cacheprovider -q -rs -W ignore::DeprecationWarning -o faulthandler_timeout=120 \
-  --junitxml="$XML" "${TESTS[@]}"
+# What is in test/house reads the sources, and the searches for states and arrangements and the
+# simulated drills, radios and cameras use no library: they find the same whatever the versions.
+# pytest ignores no file that it is given by name.
+GLOBIGNORE='test/house/*:test/scripts/*:test/voice/test_speech_audio.py:test/driving/test_every_state*'
+GLOBIGNORE+=':test/drill/test_drill_rehearsal.py:test/link/test_link_radio.py:test/link/test_link_rate.py'
+GLOBIGNORE+=':test/screen/test_arrangement.py:test/camera/test_camera_budget.py'
+TESTS=(test/*/test_*.py test/*/gui/test_widgets_*.py)
+# mhri_test.sh installs zenoh; its one build is for Python 3.8 and all later ones.
+[ ! -d build/.ws/link/zenoh ] || TESTS+=(test/link/ros/test_carrier.py test/link/ros/test_datagrams.py)
+# Nothing of a workspace or of ROS is on the path; support/qt.py starts a screen of its own.
+unset DISPLAY XAUTHORITY
+PYTHONPATH="$REPO/src" ROS_PACKAGE_PATH="$REPO" exec "$HOME_OF_IT/bin/python" -m pytest \
+  -p no:cacheprovider -q -rs -W ignore::DeprecationWarning --timeout 600 \
+  --junitxml="$XML" "${LEFT_OUT[@]}" "${TESTS[@]}"

@@ -13,6 +13,7 @@ FULL = os.environ.get('MHRI_BENCH') == 'full'
 LIMIT_S = 900 if FULL else 300
 
 
+@pytest.mark.timeout(2 * LIMIT_S)
 @pytest.mark.parametrize('path', BENCHMARKS, ids=lambda path: path.stem)
 def test_benchmark(path):
     command = [sys.executable, str(path)] + ([] if FULL else ['--short'])
