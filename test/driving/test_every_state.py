@@ -8,14 +8,10 @@ searched is printed: states, transitions, depth. A violation comes with its shor
 import collections
 import os
 
-import pytest
-
 from support.driving_packing import Packing
 from mhri.driving import arbiter, robot_rule
 from support.every_state import Search, Violation
 
-# It takes a minute, and no time limit is in it.
-pytestmark = pytest.mark.modest
 WHOLE = 11500
 MOST = int(os.environ.get('MHRI_EVERY_STATE', WHOLE))
 # The least of the whole short form.

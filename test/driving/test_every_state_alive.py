@@ -18,8 +18,6 @@ from support.driving_world import GUARD, GUARD_PATH
 from support.every_state import Violation
 from support.mutated import changed, changed_module, mutated
 
-# It takes a minute, and no time limit is in it.
-pytestmark = pytest.mark.modest
 MOST = 4000
 BEHIND_B = ('wait 1', 'wish b ', 'stick b rest', 'wish a ', 'take a', 'wish a gp')
 CHANGES = [

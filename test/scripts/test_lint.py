@@ -12,8 +12,6 @@ import sys
 
 import pytest
 
-pytestmark = pytest.mark.modest
-
 REPO = Path(__file__).resolve().parents[2]
 # mhri_test.sh installs there what the system does not package.
 TOOLS = REPO / 'build' / '.ws' / 'tools'

@@ -13,8 +13,6 @@ from test_remote_deploy import SSH
 
 from mhri.link.keys import read_lists
 
-pytestmark = pytest.mark.modest
-
 SCRIPT = str(REPO / 'utils' / 'host' / 'mhri_keys.sh')
 AUTHORITY, PLACE = '.config/mhri/authority', '.config/mhri/keys'
 FILES = {'authority.pem', 'own.key', 'own.pem', 'peers', 'withdrawn', 'withdrawn.pem'}

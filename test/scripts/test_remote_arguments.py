@@ -8,8 +8,6 @@ import subprocess
 from support.checkout import REPO
 import pytest
 
-pytestmark = pytest.mark.modest
-
 SCRIPTS = {'connect': REPO / 'utils/host/connect_turtlebot.sh',
            'deploy': REPO / 'utils/host/turtlebot_deploy.sh',
            'remote': REPO / 'utils/remote/turtle_remote.sh'}

@@ -15,8 +15,6 @@ from support.ros_system import wait_for
 import pytest
 from test_run_network import stranger
 
-pytestmark = pytest.mark.modest
-
 PATH = REPO / 'utils' / 'remote' / 'turtle_check.py'
 SPEC = importlib.util.spec_from_file_location('turtle_check', str(PATH))
 turtle_check = importlib.util.module_from_spec(SPEC)

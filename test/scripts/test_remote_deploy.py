@@ -10,8 +10,6 @@ import subprocess
 from support.checkout import REPO
 import pytest
 
-pytestmark = pytest.mark.modest
-
 SCRIPT = REPO / 'utils' / 'host' / 'turtlebot_deploy.sh'
 REMOTE = REPO / 'utils' / 'remote'
 FILES = sorted(path.name for path in REMOTE.iterdir() if path.is_file())

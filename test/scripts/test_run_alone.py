@@ -8,8 +8,6 @@ from xmlrpc.server import SimpleXMLRPCServer
 
 import pytest
 
-pytestmark = pytest.mark.modest
-
 MUX_TOPIC, SELECT, MODE = (
     '/robot_controller/twist', '/robot_controller/robot_select', '/mux_in/mode_select')
 

@@ -5,8 +5,6 @@ import re
 
 import pytest
 
-pytestmark = pytest.mark.modest
-
 
 @pytest.mark.parametrize('arguments, named', [
     (['--frobnicate'], '--frobnicate'),

@@ -9,8 +9,6 @@ import pytest
 
 from support.ros_system import free_port
 
-pytestmark = pytest.mark.modest
-
 LOOPBACK = ['ROS_HOSTNAME=127.0.0.1', 'ROS_IP=127.0.0.1']
 
 

@@ -11,7 +11,7 @@ import subprocess
 import pytest
 from support.paths import REPO
 
-pytestmark = [pytest.mark.modest, pytest.mark.skipif(
+pytestmark = [pytest.mark.skipif(
     shutil.which('mkdocs') is None, reason='there is no mkdocs (package mkdocs)')]
 
 

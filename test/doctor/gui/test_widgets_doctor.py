@@ -7,8 +7,6 @@ from python_qt_binding.QtGui import QGuiApplication
 from mhri.doctor.facts import FAULT, Finding, FINE, WARNING
 from mhri.doctor.gui.doctor_page import DoctorPage
 
-pytestmark = pytest.mark.modest
-
 FOUND = [
     Finding(FAULT, 'dead_node', '/bot1/base', 'is registered, but refuses connections',
             'bot1 stays "gone"', 'rosnode cleanup', ''),

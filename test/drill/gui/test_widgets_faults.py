@@ -10,8 +10,6 @@ from mhri.drill.gui.faults_page import FaultsPage, FOR_S
 from mhri.drill.presenters.fault_presenter import FaultPresenter
 from mhri.sim.faults import FAULTS
 
-pytestmark = pytest.mark.modest
-
 
 @pytest.fixture
 def page(operator):

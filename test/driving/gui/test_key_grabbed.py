@@ -6,11 +6,7 @@ import ctypes.util
 import statistics
 import time
 
-import pytest
-
 from support.keyboard import xdotool
-
-pytestmark = pytest.mark.timed
 
 GRAB_MODE_ASYNC, CURRENT_TIME = 1, 0
 

@@ -12,8 +12,6 @@ from mhri.driving.gui.x_server import XServer
 from support.keyboard import xdotool
 from support.ros_system import wait_for
 
-pytestmark = pytest.mark.timed
-
 # An X server repeats a key from 0.66 s on; the power is cut after 2 s.
 HELD_S = 2.6
 

@@ -8,8 +8,6 @@ from python_qt_binding.QtCore import Qt
 
 from mhri.base.views import ControlView
 
-pytestmark = pytest.mark.modest
-
 WHO = ControlView(False, 'panel on lab-pc2', '14:02')
 
 

@@ -9,8 +9,6 @@ from python_qt_binding.QtWidgets import QApplication, QWidget
 
 from mhri.driving.gui.virtual_joystick import deflection_of, VirtualJoystick
 
-pytestmark = pytest.mark.modest
-
 
 @pytest.fixture
 def joystick(operator):

@@ -9,8 +9,6 @@ from python_qt_binding.QtWidgets import QApplication
 from mhri.driving.gui.drive_keys import COMMANDS
 from mhri.driving.gui.key_help import COMMAND_WORDS, KEY_ROWS, TITLE
 
-pytestmark = pytest.mark.modest
-
 W, SPACE = 25, 65
 
 

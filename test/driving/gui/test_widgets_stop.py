@@ -12,8 +12,6 @@ from mhri.driving.gui import stop_bar
 from mhri.driving.gui.stop_bar import StopBar
 from mhri.driving.stop_words import StopWords
 
-pytestmark = pytest.mark.modest
-
 
 def headline(bar):
     return bar.findChild(QWidget, 'stopped_label')

@@ -15,8 +15,6 @@ from mhri.events.presenters import event_presenter
 from mhri.events.presenters.event_presenter import EventPresenter
 from mhri.recording.recording import RecordingStatus
 
-pytestmark = pytest.mark.modest
-
 WALL_S = 1.8e9
 NOTES = (('drive.checked', 'checked', 'bot1'), ('link.lost', 'lost while driven: silent', 'bot2'),
          ('stop.engaged', 'STOP ALL', ''), ('battery.low', 'battery 29 %: charge it soon', 'bot1'))

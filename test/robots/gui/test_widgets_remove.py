@@ -10,8 +10,6 @@ from python_qt_binding.QtWidgets import QApplication, QWidget
 from mhri.robots.gui import remove_steps
 from mhri.robots.gui.remove_steps import KEEP, REMOVE
 
-pytestmark = pytest.mark.modest
-
 
 @pytest.fixture
 def steps(panel, four_robots):

@@ -20,8 +20,6 @@ from mhri.screen.gui.windows import TurtleBotWindow
 
 from support.rich_text import takes_for_html
 
-pytestmark = pytest.mark.modest
-
 
 def hostile_robot(text):
     return views.RobotView(

@@ -17,8 +17,6 @@ from mhri.screen.presenters.screen_presenter import ScreenPresenter
 from mhri.screen.ros.backend import ScreenBackend
 from support.clock import Clock
 
-pytestmark = pytest.mark.paired
-
 
 @pytest.fixture
 def window(operator):

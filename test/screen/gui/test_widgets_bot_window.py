@@ -21,8 +21,6 @@ from mhri.screen.gui.torn_off import TornOff
 from mhri.screen.gui.windows import TurtleBotWindow, window_class
 from support.clock import Clock
 
-pytestmark = pytest.mark.modest
-
 VIEW = RobotView('bot1', 'TurtleBot2', link=views.LIVE, age_s=0.012, linear_mps=0.31,
                  angular_rad_s=0.2, heading_rad=0.82, x_m=1.25, y_m=-0.4, battery=0.82,
                  max_linear_mps=0.65, max_angular_rad_s=3.14)

@@ -12,8 +12,6 @@ from mhri.driving.gui import mode_combo
 from mhri.driving.gui.mode_combo import ModeCombo
 from mhri.driving.gui.speed_limits import SpeedLimits
 
-pytestmark = pytest.mark.modest
-
 SOURCES = (('joy', 'Virtual joystick'), ('ps3joy', 'PS3 Controller'), ('voice', 'Voice'))
 
 

@@ -13,8 +13,6 @@ from mhri.screen.gui.screen import ScreenWidget
 from mhri.screen.gui.torn_off import TornOff
 from mhri.screen.gui.windows import window_class
 
-pytestmark = pytest.mark.modest
-
 Q, E, W, A, S, D, UP, LEFT, RIGHT, DOWN, SPACE, ONE, NINE, ZERO, SHIFT = (
     24, 26, 25, 38, 39, 40, 111, 113, 114, 116, 65, 10, 18, 19, 50)
 

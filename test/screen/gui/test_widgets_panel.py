@@ -11,8 +11,6 @@ from python_qt_binding.QtWidgets import QLabel
 from mhri.base import views
 from mhri.driving.stop_words import stop_words
 
-pytestmark = pytest.mark.modest
-
 
 def test_buttons_and_fields_ask(panel, operator, heard, four_robots):
     panel.show_view(four_robots)

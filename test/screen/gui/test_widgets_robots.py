@@ -15,8 +15,6 @@ from mhri.robots.gui.robot_list import RobotList
 from mhri.robots.gui.robot_row import DRIVING, MOVING, RobotRow
 from mhri.robots.owners import ASK_FOR, TAKE_IT
 
-pytestmark = pytest.mark.modest
-
 LIVE = RobotView('bot1', 'TurtleBot2', link=views.LIVE, age_s=0.012, linear_mps=0.31,
                  angular_rad_s=-0.2, battery=0.82)
 

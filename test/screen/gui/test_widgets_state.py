@@ -11,8 +11,6 @@ from mhri.base.mocap import Drift
 from mhri.base.views import LinkFigures, StateView
 from mhri.screen.gui.state_line import age_phrase, capture_phrases, StateLine
 
-pytestmark = pytest.mark.modest
-
 
 def test_the_line_keeps_its_width_while_an_age_grows():
     """Digits of one width, and room for the longest: nothing jitters."""

@@ -10,8 +10,6 @@ from mhri.base.gui import words
 from mhri.base.gui.pending import Pace, Pending
 from support.clock import Clock
 
-pytestmark = pytest.mark.modest
-
 NAN = float('nan')
 
 

@@ -13,8 +13,6 @@ from mhri.session.gui.time_line import NOTHING_DRIVES, PAUSE, PLAY, TimeLineBar
 from mhri.session.timeline import read_time_line
 from support.maps import move
 
-pytestmark = pytest.mark.modest
-
 START = 1.7e9
 
 

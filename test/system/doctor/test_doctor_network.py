@@ -17,7 +17,7 @@ from support.ros_system import System, wait_for
 from support.surgery import PATIENT, SCRIPT, wrong
 
 WHY_NOT = machines.why_not()
-pytestmark = [pytest.mark.paired, pytest.mark.skipif(WHY_NOT is not None, reason=str(WHY_NOT))]
+pytestmark = [pytest.mark.skipif(WHY_NOT is not None, reason=str(WHY_NOT))]
 
 HOST_IP = machines.HOST_IP
 # An address that the host has, and of whose network the robot knows nothing.

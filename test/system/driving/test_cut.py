@@ -9,11 +9,7 @@ after a pause as long as the outage, in which the robot drives on.
 import socket
 import time
 
-import pytest
-
 from support.ros_system import wait_for
-
-pytestmark = pytest.mark.timed
 
 LONG_S = 300.0
 # What is waited for inside, so that a failure says what it was waiting for. And how long

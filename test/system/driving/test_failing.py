@@ -11,8 +11,6 @@ from support import graph
 from support.ros_system import children, System, wait_for
 from support.rostest_tools import LATE_S
 
-pytestmark = pytest.mark.timed
-
 ROBOTS = ['plain1', 'plain2']
 # The mux, of which one method fails once when a file is there.
 FAILS = '''

@@ -15,8 +15,6 @@ from support import graph
 from support.journals import Journal
 from support.ros_system import freeze, insist, System, wait_for
 
-pytestmark = pytest.mark.timed
-
 # Deceleration from the speeds driven here, and the next odometry message [s].
 BRAKING_S = 0.35
 ROBOTS = ('bot1', 'bot2')

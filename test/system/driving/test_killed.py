@@ -20,8 +20,6 @@ from support import graph
 from support.paths import GUARD
 from support.ros_system import child_processes, freeze, System, thaw, wait_for
 
-pytestmark = pytest.mark.timed
-
 ROBOTS = ['plain1', 'plain2', 'plain3', 'plain4']
 KILLS = int(os.environ.get('MHRI_KILLS', '4'))
 # Promised; the next drive on a busy computer, promised: 1.5 s and 3 s [s].

@@ -9,11 +9,7 @@ import signal
 import statistics
 import time
 
-import pytest
-
 from support.ros_system import wait_for
-
-pytestmark = pytest.mark.timed
 
 KILLS = int(os.environ.get('MHRI_KILLS', '5'))
 LONG_S = 60.0

@@ -9,12 +9,8 @@ form: 200 drives and 100 goals; ``MHRI_SEED`` begins at another seed.
 from collections import Counter
 import statistics
 
-import pytest
-
 from support.hostile import is_long, seed_of
 from support.rough_world import DT_S, random_drive, random_goals, ROUGH
-
-pytestmark = pytest.mark.modest
 
 DRIVES, COMPARED, GOALS = (200, 200, 100) if is_long() else (28, 14, 12)
 DRIVE_S = 25.0 if is_long() else 15.0

@@ -26,8 +26,6 @@ from support.lag import LagMeter
 from support.random_world import JOY, OPERATORS, PAD, ROBOTS, World
 from support.reference_model import DRIVE, ReferenceModel, STAND
 
-pytestmark = pytest.mark.timed
-
 EVENTS = int(os.environ.get('MHRI_EVENTS') or 20)
 # The short form is the same every time; a long one is new, unless it repeats one.
 SEED = int(os.environ.get('MHRI_SEED') or (

@@ -21,8 +21,6 @@ from support.lag import LagMeter
 from support.ros_system import wait_for
 from support.task_system import NODES, ROBOTS, TaskSystem
 
-pytestmark = pytest.mark.paired
-
 # What the contract allows [s]. A robot behind a cut link without a guard has its own watchdog
 # alone: that of the simulated one takes 0.6 s and the time to brake.
 LIMITS = {'stop-all': 0.05, 'take-over': 0.05, 'kill tasks': 0.55, 'kill mux': 1.5,

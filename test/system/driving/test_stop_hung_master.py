@@ -14,8 +14,6 @@ import rosgraph
 from support import graph
 from support.ros_system import freeze, System, wait_for
 
-pytestmark = pytest.mark.timed
-
 # Each looks for the mux twice a second, and what it has found then stays.
 FOUND_S = 1.0
 # A topic of each; the screen's lines for all robots and for single ones, and the voice's.

@@ -16,8 +16,6 @@ from support import graph
 from support.ros_system import child_processes, insist, System, wait_for
 from support.stuck_panel import HANGS
 
-pytestmark = pytest.mark.timed
-
 SUPPORT = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..', 'support')
 TIMEOUT_S = 60.0
 # At the longest; what is to be seen while it hangs has been by then.

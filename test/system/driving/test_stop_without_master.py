@@ -3,11 +3,7 @@
 """Stop all, pressed before there is a master: it is shown, kept, and told to the mux."""
 import sys
 
-import pytest
-
 from support.ros_system import System, wait_for
-
-pytestmark = pytest.mark.timed
 
 PANEL = """
 import time

@@ -21,8 +21,6 @@ from support.hostile_wire import (
 from support.ros_system import wait_for
 from support.under_fire import ROBOTS, table, UnderFire
 
-pytestmark = pytest.mark.timed
-
 FACTOR = 20 if is_long() else 1
 MESSAGES = 40 * FACTOR
 # A line a second for each kind of mishap, in each of the programs, and what drive() makes them say.

@@ -14,8 +14,6 @@ from support import graph
 from support.ros_system import tell, wait_for
 from support.under_fire import HERE, ROBOTS, table, UnderFire
 
-pytestmark = pytest.mark.timed
-
 NAMES, TOPICS = 20000, 2000
 GROWTH_MB = 60.0
 OPERATOR = os.path.join(HERE, 'operator_process.py')

@@ -10,13 +10,9 @@ import itertools
 import threading
 import time
 
-import pytest
-
 from support import graph
 from support.hostile import is_long
 from support.under_fire import ROBOTS, table, UnderFire
-
-pytestmark = pytest.mark.paired
 
 TIMES = 20
 WARM_S, SOAK_S = (30.0, 180.0) if is_long() else (4.0, 12.0)

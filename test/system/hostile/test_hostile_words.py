@@ -13,8 +13,6 @@ from support import graph
 from support.ros_system import insist, NotYet, wait_for
 from support.under_fire import UnderFire
 
-pytestmark = pytest.mark.paired
-
 STRANGER = '/attacker'
 LIES_S = 2.5
 

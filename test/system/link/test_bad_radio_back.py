@@ -6,12 +6,8 @@ After an outage TCP says nothing on an old connection for as long again, a STOP 
 """
 import time
 
-import pytest
-
 from support.graph import SET_STOP_ALL
 from support.ros_system import wait_for
-
-pytestmark = pytest.mark.paired
 
 CLEAN = {'at_s': 0, 'delay_ms': 20}
 LONG_S = 120.0

@@ -3,11 +3,7 @@
 """A robot linked by keys behind a radio that loses a fifth of 1 Mbit/s, and then everything."""
 import math
 
-import pytest
-
 from support.ros_system import wait_for
-
-pytestmark = pytest.mark.paired
 
 BAD = {'at_s': 0, 'delay_ms': 200, 'loss_percent': 20, 'rate_mbit': 1}
 LONG_S, STANDS_M = 120.0, 0.005

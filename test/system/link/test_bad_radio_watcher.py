@@ -7,10 +7,6 @@ import subprocess
 import sys
 import time
 
-import pytest
-
-pytestmark = pytest.mark.paired
-
 BAD = {'delay_ms': 200, 'loss_percent': 20, 'rate_mbit': 1}
 LONG_S, DRIVE_S = 120.0, 15.0
 # Without the watcher it is 100 %; on a busy computer a little less.

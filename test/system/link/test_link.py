@@ -12,8 +12,6 @@ from support import graph
 from support.linked import Linked, LONG_S, Operator
 from support.ros_system import freeze, thaw, wait_for
 
-pytestmark = pytest.mark.paired
-
 # The lease is 0.3 s, and the robot brakes; the rest is for a busy computer.
 STANDS_S = 3.0
 # Counts on another master how often the mux ends on purpose.

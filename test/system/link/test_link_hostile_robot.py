@@ -9,8 +9,6 @@ from support.graph import SET_MOTOR_POWER
 from support.linked import LONG_S, Operator
 from support.ros_system import free_port, System, wait_for
 
-pytestmark = pytest.mark.paired
-
 ODOMETRY = 'nav_msgs/Odometry'
 # What it says of itself, all of it about others or too fast.
 HOSTILE = {'robot_type': 'turtlebot3', 'mhri': {

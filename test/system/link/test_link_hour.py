@@ -16,7 +16,7 @@ from support.masters import LONG_S, Masters, ROBOTS
 from support.ros_system import wait_for
 
 WHY_NOT = machines.why_not() if is_long() else 'takes an hour: MHRI_LONG=1'
-pytestmark = [pytest.mark.paired, pytest.mark.skipif(WHY_NOT is not None, reason=str(WHY_NOT))]
+pytestmark = [pytest.mark.skipif(WHY_NOT is not None, reason=str(WHY_NOT))]
 
 OUTAGE_S = float(os.environ.get('MHRI_OUTAGE_S', 3600.0))
 # The second one is linked by the router.

@@ -25,8 +25,6 @@ from support.cable import Cable
 from support.linked import Linked, LONG_S, Operator
 from support.ros_system import wait_for
 
-pytestmark = pytest.mark.paired
-
 ATTACK_S = 2.0
 # How long a certificate is good that runs out, and how soon after that its owner is out.
 VALID_S, OUT_S = 30.0, 8.0

@@ -20,7 +20,7 @@ from support.ros_system import wait_for
 
 WHY_NOT = machines.why_not() or (
     None if shutil.which('nft', path=os.environ['PATH'] + ':/usr/sbin') else 'there is no nft here')
-pytestmark = [pytest.mark.paired, pytest.mark.skipif(WHY_NOT is not None, reason=str(WHY_NOT))]
+pytestmark = [pytest.mark.skipif(WHY_NOT is not None, reason=str(WHY_NOT))]
 
 REMOTE = Path(__file__).resolve().parents[3] / 'utils' / 'remote'
 PORT = 7447

@@ -15,7 +15,7 @@ from support.lab import LONG_S, running_lab, START_S
 from support.ros_system import wait_for
 
 WHY_NOT = machines.why_not()
-pytestmark = [pytest.mark.paired, pytest.mark.skipif(WHY_NOT is not None, reason=str(WHY_NOT))]
+pytestmark = [pytest.mark.skipif(WHY_NOT is not None, reason=str(WHY_NOT))]
 
 ROUTER = 'tcp/10.77.0.12:7448'
 LEFT = ('turtle_remote', 'roslaunch', 'roscore', 'rosmaster', 'sim_robot', 'nodelet', 'mhri_guard',

@@ -18,8 +18,6 @@ from support.paths import SUPPORT
 from support.recordings import numbers_in, record
 from support.ros_system import wait_for
 
-pytestmark = pytest.mark.paired
-
 MB = 10 ** 6
 
 

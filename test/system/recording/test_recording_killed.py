@@ -18,8 +18,6 @@ from support import graph
 from support.ros_system import wait_for
 from support.rostest_tools import measured
 
-pytestmark = pytest.mark.paired
-
 IMU = '/bot1/mobile_base/sensors/imu_data'
 START_S = 120.0
 

@@ -4,13 +4,9 @@
 import os
 import subprocess
 
-import pytest
-
 from mhri.driving.ros.stop_line import StopLine
 from support import graph
 from support.ros_system import System, wait_for
-
-pytestmark = pytest.mark.paired
 
 
 def start(system):

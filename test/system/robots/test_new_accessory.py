@@ -24,7 +24,7 @@ from support.ros_system import wait_for
 GUIDE = Path(__file__).resolve().parents[3] / 'doc' / 'new_accessory.md'
 PANEL = 'roslaunch mhri mhri.launch gui:=standalone\n'
 
-pytestmark = [pytest.mark.paired, pytest.mark.filterwarnings('ignore::DeprecationWarning')]
+pytestmark = [pytest.mark.filterwarnings('ignore::DeprecationWarning')]
 
 
 class Rescue(PanelSession):

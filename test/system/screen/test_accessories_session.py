@@ -22,8 +22,6 @@ from support.panel_session import PanelSession
 from support.room import Room
 from support.ros_system import insist
 
-pytestmark = pytest.mark.paired
-
 LONG_S = 120.0
 # Its lamp is that of the simulator; more would not fit in its tile.
 ROWS = {'lamp': {'kind': 'toggle', 'topic': 'lamp', 'state': 'lamp_state', 'on_stop': 'keep'},

@@ -24,8 +24,6 @@ from support.journals import Journal
 from support.keyboard import xdotool
 from support.ros_system import processes_with, System, wait_for
 
-pytestmark = pytest.mark.paired
-
 ROBOTS = ('bot1', 'bot2', 'bot3')
 DRIVE_S = float(os.environ.get('MHRI_DRIVE_S') or 3.0)
 

@@ -15,8 +15,6 @@ from support import maps
 from support.keyboard import Keyboard, xdotool
 from support.panel_session import PanelSession
 
-pytestmark = pytest.mark.paired
-
 ROBOTS = ('bot1', 'bot2', 'bot3', 'bot7')
 TIMEOUT_S = 120.0
 AGAIN_S = 10.0

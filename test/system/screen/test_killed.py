@@ -3,13 +3,9 @@
 """A panel that is killed while a real key, pressed in the X server, drives two robots."""
 import time
 
-import pytest
-
 from support.keyboard import xdotool
 from support.ros_system import insist, NotYet, System, wait_for
 from support.windows import windows_called
-
-pytestmark = pytest.mark.timed
 
 
 def test_the_robots_stand_still_within_600_ms():

@@ -18,8 +18,6 @@ from mhri.screen.gui.stage import MAP_CLOSED, MAP_LARGE
 from support.maps import click, drag
 from support.panel_session import PanelSession
 
-pytestmark = pytest.mark.paired
-
 TIMEOUT_S = 120.0
 # What was refused, since a node was silent for a moment, is asked for again.
 AGAIN_S = 10.0

@@ -16,7 +16,7 @@ PS3 = 'Sony PLAYSTATION(R)3 Controller'
 # The dead-man button of resource/pads/ps3.yaml.
 L1 = 4
 
-pytestmark = [pytest.mark.paired, pytest.mark.skipif(bool(NO_PADS), reason=str(NO_PADS)),
+pytestmark = [pytest.mark.skipif(bool(NO_PADS), reason=str(NO_PADS)),
               pytest.mark.filterwarnings('ignore::DeprecationWarning')]
 
 

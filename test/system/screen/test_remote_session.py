@@ -16,8 +16,6 @@ from support.keyboard import Keyboard, xdotool
 from support.panel_session import PanelSession
 from support.ros_system import insist
 
-pytestmark = pytest.mark.paired
-
 # What is held counts so long without a sign of life, and so much longer the way to the robot takes.
 HELD_S, WAY_S = 1.0, 0.5
 

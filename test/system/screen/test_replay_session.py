@@ -14,8 +14,6 @@ from mhri.session.gui.time_line import NOTHING_DRIVES
 from support.made_session import MARKS
 from support.ros_system import System, wait_for
 
-pytestmark = pytest.mark.paired
-
 TIMEOUT_S = 120.0
 
 

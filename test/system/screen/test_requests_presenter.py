@@ -9,8 +9,6 @@ from mhri.driving.gui.hands import Errand
 from support import graph
 from support.panel_session import PanelSession
 
-pytestmark = pytest.mark.paired
-
 ROBOTS = ['bot1', 'bot2', 'bot3']
 BUDGET = '/mhri/panel/camera_budget_mbit_s'
 TIMEOUT_S = 60.0

@@ -19,8 +19,6 @@ from mhri.driving.gui.hands import Grip
 from support.label_reader import DistanceReader, Unreadable
 from support.panel_session import PanelSession
 
-pytestmark = pytest.mark.paired
-
 # bot1 looks at the red column, and past it at two walls; bot2 turns on the spot elsewhere.
 POSE = (9.1, 1.4, -0.12)
 CAMERA_HEIGHT_M = 0.3

@@ -20,8 +20,6 @@ from support.graph import STICK
 from support.keyboard import Keyboard, xdotool
 from support.ros_system import System, wait_for
 
-pytestmark = pytest.mark.paired
-
 ROBOTS = ('bot1', 'bot2')
 MAX_TABS = 60
 # The places of 1, 2, 3 and Enter there.

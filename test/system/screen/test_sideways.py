@@ -13,7 +13,6 @@ from mhri.base.views import VIRTUAL_JOYSTICK
 from mhri.screen.presenters.demo import Grip
 from support.panel_session import PanelSession
 
-pytestmark = pytest.mark.paired
 # One starts 1 m beside a wall on its left, the other far away from it.
 CAN, CANNOT = 'bot3', 'bot1'
 LEFT_MPS = 0.2

@@ -7,8 +7,6 @@ from mhri.driving.gui.hands import Errand
 from support.panel_session import PanelSession
 from support.ros_system import insist, NotYet
 
-pytestmark = pytest.mark.paired
-
 TIMEOUT_S = 120.0
 # What was refused, since a node was silent for a moment, is asked for again.
 AGAIN_S = 5.0

@@ -38,7 +38,7 @@ IMU_TOPIC, SCAN_TOPIC = '/bot1/mobile_base/sensors/imu_data', '/bot1/scan'
 TOPIC_OF = {'imu': IMU_TOPIC, 'rgb': RGB_TOPIC, 'depth': DEPTH_TOPIC, 'scan': SCAN_TOPIC}
 
 # rospy uses names of Python 3.9; pytest would keep a note of each time.
-pytestmark = [pytest.mark.paired, pytest.mark.filterwarnings('ignore::DeprecationWarning')]
+pytestmark = [pytest.mark.filterwarnings('ignore::DeprecationWarning')]
 
 
 @pytest.fixture(scope='module')

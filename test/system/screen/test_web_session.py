@@ -10,8 +10,6 @@ import pytest
 
 from support.panel_session import PanelSession
 
-pytestmark = pytest.mark.paired
-
 TIMEOUT_S = 120.0
 
 

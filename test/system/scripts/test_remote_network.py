@@ -19,7 +19,7 @@ from support.lab import GUARDED, HOST_SCRIPTS, LONG_S, Operator, running_lab, ST
 from support.ros_system import wait_for
 
 WHY_NOT = machines.why_not()
-pytestmark = [pytest.mark.timed, pytest.mark.skipif(WHY_NOT is not None, reason=str(WHY_NOT))]
+pytestmark = [pytest.mark.skipif(WHY_NOT is not None, reason=str(WHY_NOT))]
 
 REMOTE = REPO / 'utils' / 'remote'
 KINDS = {'bot1': ('--type', 'turtlebot2'), 'bot2': ('--type', 'turtlebot3', '--no-guard')}

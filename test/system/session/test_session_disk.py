@@ -15,8 +15,6 @@ import rosbag
 from mhri.recording.folder import bags_of, read_events
 from support.ros_system import wait_for
 
-pytestmark = pytest.mark.paired
-
 TOPIC = '/mux_in/lab'
 TIMEOUT_S = 60.0
 KILLS = 2

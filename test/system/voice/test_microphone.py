@@ -11,8 +11,6 @@ from mhri.voice.io.audio import Microphone
 from mhri.voice.sound import BLOCK_BYTES
 from support.ros_system import children
 
-pytestmark = pytest.mark.modest
-
 BLOCK = bytes(range(256)) * (BLOCK_BYTES // 256) + bytes(BLOCK_BYTES % 256)
 
 # ALSA's file device gives what is in a file, so that PortAudio really hears something.

@@ -12,8 +12,6 @@ from support.headset import Headset, LONG_S
 from support.paths import RESOURCE
 from support.ros_system import insist, System, wait_for
 
-pytestmark = pytest.mark.timed
-
 CENTRE, CORNER = (0.5, 0.5), (0.25, 0.3)
 RED, BLUE = np.array([255, 0, 0]), np.array([0, 0, 255])
 # Two cameras of the robot looked at, one colour each, in place of what the demo shows.

@@ -14,8 +14,6 @@ from mhri.screen.gui.robot_tile import RobotTile
 from mhri.tasks.gui.runs_list import RunsList
 from mhri.tasks.gui.tasks_page import TasksPage
 
-pytestmark = pytest.mark.modest
-
 KINDS = (
     KindView('goto', 'Go to', 'to a place', (
         FieldView('x', 'm', 'ahead', '', -1000.0, 1000.0),

@@ -18,7 +18,6 @@ from mhri.web.presenters.web_presenter import WebPresenter
 from mhri.web.ros.web_client import code_of
 from mhri.web.view import LinkView, ViewerView, WebView
 
-pytestmark = pytest.mark.modest
 URL = 'https://192.168.20.117:8443/t/0123456789abcdefghijkl'
 NOW = time.time()
 LINK = LinkView('a', 'Maria', 'watch', True, False, NOW + 3600.0)

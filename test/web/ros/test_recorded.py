@@ -16,7 +16,6 @@ from support import made_session as made
 from mhri.web.io import recorded
 from mhri.web.io.recorded import Recorded
 
-pytestmark = pytest.mark.modest
 TIMEOUT_S = 60.0
 NAME = '2023-11-14-22-13-20'
 CAMERA, EVERY_S = '/bot2/camera/image_raw/compressed', 2.0
