@@ -38,8 +38,7 @@ DEBIAN_RUN=(
 )
 DEBIAN_TEST=(
   librostest-dev python3-rostest python3-roslib topic-tools python3-pytest python3-pytest-timeout
-  python3-flake8
-  python3-flake8-docstrings python3-pip python3-psutil python3-rosdep2 catkin-lint shellcheck mkdocs
+  python3-flake8 python3-flake8-docstrings python3-pip python3-psutil python3-rosdep2 catkin-lint shellcheck mkdocs
   xdotool imagemagick x11-utils git procps espeak-ng sox ffmpeg openssh-server iproute2 nftables
   chromium chromium-driver python3-selenium
 )
@@ -47,7 +46,7 @@ DEBIAN_TEST=(
 FAST=(
   python3-catkin-pkg python3-evdev python3-flake8 python3-numpy python3-opencv
   python3-pip python3-psutil python3-pyaudio python3-pytest python3-pytest-timeout python3-rospkg
-  python3-yaml util-linux
+  python3-yaml git util-linux
 )
 # On Ubuntu rosdep reads the ROS packages from package.xml; these have no key there.
 UBUNTU_RUN=(

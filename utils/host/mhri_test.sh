@@ -22,9 +22,9 @@ install_tools() {
   fi
 }
 
-# has_fast: true if python3 has what the fast tests import.
+# has_fast: true if git is there, and what the fast tests import.
 has_fast() {
-  PYTHONPATH="$WS/tools" python3 -c 'import catkin_pkg, ctypes, cv2, evdev, flake8, flake8_docstrings
+  command -v git >/dev/null && PYTHONPATH="$WS/tools" python3 -c 'import catkin_pkg, ctypes, cv2, evdev, flake8, flake8_docstrings
 import numpy, psutil, pyaudio, pytest, pytest_timeout, rospkg, yaml
 ctypes.CDLL("libturbojpeg.so.0")' 2>/dev/null
 }
@@ -40,7 +40,8 @@ main() {
   case " $* " in
     *" --help "* | *" -h "* | *" --list "*) exec "${run[@]}" ;;
   esac
-  # Wrong arguments end it before anything is installed.
+  # Wrong arguments end it before anything else is installed.
+  command -v python3 >/dev/null || install_packages python3
   "${run[@]}" --list >/dev/null || exit
   mkdir -p "$WS" 2>/dev/null || die "cannot write to $REPO: the results go to build/.ws"
   make_scratch
