@@ -74,13 +74,15 @@ def file_job(path, results, only=''):
 
 def alone(job, case, results):
     """Return the job of one test; None of what is no test, or is pure."""
-    module = str(job.path and job.path.relative_to(REPO).with_suffix('')).replace('/', '.')
-    if job.path and job.path.suffix == '.py' and (case.group + '.').startswith(module + '.'):
-        classes = filter(None, case.group[len(module) + 1:].split('.'))
-        return file_job(job.path, results, '::'.join(['', *classes, case.name]))
-    if case.file.name.startswith('rosunit-') and case.name.startswith('test'):
-        return file_job(job.path, results, '{}.{}'.format(case.group, case.name))
-    return None
+    if job.path is None:
+        return None
+    if job.path.suffix == '.test':
+        is_test = case.file.name.startswith('rosunit-') and case.name.startswith('test')
+        return file_job(job.path, results, case.group + '.' + case.name) if is_test else None
+    module, group = job.path.relative_to(REPO).with_suffix('').parts, case.group.split('.')
+    if tuple(group[:len(module)]) != module:
+        return None
+    return file_job(job.path, results, '::'.join(['', *group[len(module):], case.name]))
 
 
 def is_pure(path):
@@ -347,4 +349,7 @@ def main():
 
 
 if __name__ == '__main__':
-    sys.exit(main())
+    try:
+        sys.exit(main())
+    except KeyboardInterrupt:
+        sys.exit(130)
