@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What every test file gets by its folder: no ROS for what is pure, a screen for what draws.
 
-A test in ``test/<subject>/`` itself runs where there is no ROS and nothing is built.
+A test in ``test/unit/`` runs where there is no ROS and nothing is built.
 """
 from pathlib import Path
 import re
@@ -28,8 +28,8 @@ class Refusal:
         :raises ImportError: the module belongs to ROS, or is generated from the messages of mhri
         """
         if cls.pure and ROS.match(name):
-            raise ImportError('{} is of ROS, which tests in test/<subject> do without: put the '
-                              'test in test/<subject>/ros'.format(name), name=name)
+            raise ImportError('{} is of ROS, which tests in test/unit do without: put the '
+                              'test in test/ros'.format(name), name=name)
 
 
 sys.meta_path.insert(0, Refusal)
@@ -39,7 +39,7 @@ def enter(node):
     """Refuse ROS from here on if a file is pure; return its folder as parts."""
     # Not `path`, which pytest of Ubuntu 20.04 does not have.
     folder = Path(str(node.fspath)).relative_to(TEST).parts[:-1]
-    Refusal.pure = len(folder) == 1 and folder != ('scripts',)
+    Refusal.pure = folder[:1] == ('unit',)
     return folder
 
 
@@ -47,9 +47,9 @@ def pytest_collectstart(collector):
     """Give a file what its folder has, before it is imported."""
     if isinstance(collector, pytest.Module):
         folder = enter(collector)
-        if folder[-1] == 'gui' or folder == ('system', 'screen'):
+        if folder[:1] == ('qt',) or folder == ('long', 'screen'):
             collector.config.pluginmanager.import_plugin('support.qt')
-        elif folder[-1] == 'scripts':
+        elif folder in (('long', 'house'), ('long', 'utils')):
             collector.config.pluginmanager.import_plugin('support.checkout')
 
 

@@ -26,15 +26,15 @@ WANTED, AT_ONCE, TIMEOUT_S = 0.97, 2, 150.0
 # The search in a short bound.
 SHORT = {'MHRI_EVERY_STATE': '2000'}
 GUARD = 'utils/remote/mhri_guard'
-DRIVING, ALL = 'test/driving/test_{}.py', 'drive drive_settings every_state'
-#: {file, without src/mhri/ and .py: names of the tests in test/driving, or paths}, quickest first
+DRIVING, ALL = 'test/unit/driving/test_{}.py', 'drive drive_settings every_state'
+#: {file, without src/mhri/ and .py: names of tests in test/unit/driving, or paths}, quickest first
 TESTS = {
     'driving/accessories': 'accessory_rules every_state',
     'driving/accessory_rule': 'accessory_rules every_state', 'driving/advice': 'driving_parts',
     'driving/arbiter': 'arbiter arbiter_rules arbiter_sources ' + ALL,
     'driving/buttons': 'buttons ' + ALL, 'driving/control': 'control',
     'driving/drive': 'operator_lease ' + ALL, 'driving/driven_limits': 'driven_limits ' + ALL,
-    'driving/group_speed': 'control test/robots/test_link_quality.py',
+    'driving/group_speed': 'control test/unit/robots/test_link_quality.py',
     'driving/guard_link': 'guard_link guard ' + ALL, 'driving/pad_accessories': 'pad_accessories',
     'driving/motor_power': 'motor_power',
     'driving/topic_owner': 'driving_parts ' + ALL, 'driving/robot_rule': 'robot_rule ' + ALL,
@@ -44,11 +44,11 @@ TESTS = {
     'driving/robot_stops': 'robot_stops', 'driving/stop_words': 'stop_words',
     'driving/task_relay': 'driving_parts ' + ALL,
     'base/sleep_detector': 'driving_parts ' + ALL,
-    'base/limits': 'test/base/test_limits.py robot_rule ' + ALL,
-    'robots/stop_proof': 'test/robots/test_stop_proof.py',
-    'robots/listeners': 'test/robots/test_listeners.py',
-    'robots/twins': 'test/robots/test_twins.py every_state',
-    'sensors/brake': 'test/sensors/test_brake.py stick_brake guard',
+    'base/limits': 'test/unit/base/test_limits.py robot_rule ' + ALL,
+    'robots/stop_proof': 'test/unit/robots/test_stop_proof.py',
+    'robots/listeners': 'test/unit/robots/test_listeners.py',
+    'robots/twins': 'test/unit/robots/test_twins.py every_state',
+    'sensors/brake': 'test/unit/sensors/test_brake.py stick_brake guard',
     GUARD: 'guard_tables guard guard_link every_state'}
 FASTER, FALSY, NEVER, PASSED, JUST_THERE, BOTH_WAYS = (
     'it only saves time', 'None counts as the same there', 'nothing reads it before it is set',
@@ -176,7 +176,7 @@ class Finder(ast.NodeVisitor):
         for line in self._source.splitlines(True):
             self._lines.append(self._lines[-1] + len(line))
         body = ast.parse(self._source).body
-        # The rest of the guard is its node, which test/system/robot_lines drives.
+        # The rest of the guard is its node, which test/long/robot_lines drives.
         end = next((number for number, node in enumerate(body)
                     if getattr(node, 'name', '') == 'make_clock'), len(body))
         self._names = {node.id for part in body[:end] for node in ast.walk(part)

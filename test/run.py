@@ -27,8 +27,8 @@ from xml.sax.saxutils import quoteattr
 TEST = Path(__file__).resolve().parent
 REPO = TEST.parent
 WORKSPACE = REPO / 'build' / '.ws'
-BENCH, OLDEST = TEST / 'scripts/test_benchmarks.py', TEST / 'run_oldest.sh'
-LINT, SEARCHES = TEST / 'scripts/test_lint.py', tuple(TEST.glob('driving/test_every_state*.py'))
+BENCH, OLDEST = TEST / 'bench/test_benchmarks.py', TEST / 'run_oldest.sh'
+LINT, SEARCHES = TEST / 'lint/test_lint.py', tuple(TEST.glob('unit/driving/test_every_state*.py'))
 # Files at a time, and beside them as many processes at a low priority; what one test of each may
 # take, and what a file may, where Python itself has no turn to end the test [s].
 LANES, LOW_LANES, LOW, TEST_S, LOW_TEST_S, FILE_S, BENCH_S = 2, 2, 15, 120, 600, 1800, 7200
@@ -86,9 +86,8 @@ def alone(job, case, results):
 
 
 def is_pure(path):
-    """Return whether a file needs no ROS and little time: it is in the folder of a subject."""
-    return path.parent.parent == TEST and path.parent.name != 'scripts' and \
-        path.suffix == '.py' and path not in SEARCHES
+    """Return whether a file needs no ROS and little time."""
+    return TEST / 'unit' in path.parents and path not in SEARCHES
 
 
 def files_in(paths):

@@ -12,10 +12,10 @@ WANTED="$REPO/test/requirements_oldest.txt"
 HOME_OF_IT="$REPO/build/.ws/oldest"
 # PyPI has neither pocketsphinx nor PyAudio in a form that installs without their C libraries.
 LEFT_OUT=()
-# Raw pictures are not here: cv_bridge belongs to ROS, and test/camera/ros has their tests.
+# Raw pictures are not here: cv_bridge belongs to ROS, and test/ros/camera has their tests.
 for name in without_pocketsphinx_or_its_model without_a_source_nothing_is_loaded \
   a_language_that_cannot_be_used_is_said; do
-  LEFT_OUT+=(--deselect "test/voice/test_speech_reader.py::test_$name")
+  LEFT_OUT+=(--deselect "test/unit/voice/test_speech_reader.py::test_$name")
 done
 
 # Prints the first Python 3.8 that runs; pyenv has commands of that name that do not.
@@ -57,15 +57,15 @@ if ! cmp -s "$WANTED" "$HOME_OF_IT/installed"; then
   PYTHON=$(find_python) || skip 'there is no Python 3.8 here (python3.8 on the path, or of pyenv)'
   make_environment "$PYTHON" || skip 'pip could not install what is in test/requirements_oldest.txt'
 fi
-# What is in test/house reads the sources, and the searches for states and arrangements and the
+# What is in test/unit/house reads the sources, and the searches for states and arrangements and the
 # simulated drills, radios and cameras use no library: they find the same whatever the versions.
 # pytest ignores no file that it is given by name.
-GLOBIGNORE='test/house/*:test/scripts/*:test/voice/test_speech_audio.py:test/driving/test_every_state*'
-GLOBIGNORE+=':test/drill/test_drill_rehearsal.py:test/link/test_link_radio.py:test/link/test_link_rate.py'
-GLOBIGNORE+=':test/screen/test_arrangement.py:test/camera/test_camera_budget.py'
-TESTS=(test/*/test_*.py test/*/gui/test_widgets_*.py)
+GLOBIGNORE='test/unit/house/*:test/unit/voice/test_speech_audio.py:test/unit/driving/test_every_state*'
+GLOBIGNORE+=':test/unit/drill/test_drill_rehearsal.py:test/unit/link/test_link_radio.py:test/unit/link/test_link_rate.py'
+GLOBIGNORE+=':test/unit/screen/test_arrangement.py:test/unit/camera/test_camera_budget.py'
+TESTS=(test/unit/*/test_*.py test/qt/*/test_widgets_*.py)
 # mhri_test.sh installs zenoh; its one build is for Python 3.8 and all later ones.
-[ ! -d build/.ws/link/zenoh ] || TESTS+=(test/link/ros/test_carrier.py test/link/ros/test_datagrams.py)
+[ ! -d build/.ws/link/zenoh ] || TESTS+=(test/ros/link/test_carrier.py test/ros/link/test_datagrams.py)
 # Nothing of a workspace or of ROS is on the path; support/qt.py starts a screen of its own.
 unset DISPLAY XAUTHORITY
 PYTHONPATH="$REPO/src" ROS_PACKAGE_PATH="$REPO" exec "$HOME_OF_IT/bin/python" -m pytest \

@@ -78,7 +78,7 @@ class DoctorTest(unittest.TestCase):
         self.assertIn('0 faults, 0 warnings', done.stdout)
 
     def test_each_robot_is_wrong_in_another_way(self):
-        """What nodes answer and publish; what the master alone shows is in test/doctor."""
+        """What nodes answer and publish; what the master alone shows is in test/unit/doctor."""
         hole = BlackHole()
         self.addCleanup(hole.close)
         server = SimpleXMLRPCServer(('127.0.0.1', 0), logRequests=False)

@@ -7,7 +7,7 @@ own, whose link can be cut. ``MHRI_SEED`` repeats a run, ``MHRI_EVENTS`` is the 
 (default 20, for 50 s at most; ``MHRI_SECONDS`` for more), ``MHRI_KEEP`` a folder that stays
 with all logs::
 
-    MHRI_EVENTS=1000 MHRI_SEED=7 python3 -m pytest -s test/system/driving/test_random_events.py
+    MHRI_EVENTS=1000 MHRI_SEED=7 python3 -m pytest -s test/long/driving/test_random_events.py
 """
 import bisect
 from collections import Counter, defaultdict

@@ -10,8 +10,8 @@ import sys
 
 import pytest
 
-REPO = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(REPO / 'test' / 'house'))
+REPO = Path(__file__).resolve().parents[3]
+sys.path.insert(0, str(REPO / 'test' / 'unit' / 'house'))
 
 from support.ros_system import System  # noqa: E402
 from test_house import imports, place_of, REMOVABLE  # noqa: E402
@@ -58,7 +58,8 @@ def known(path):
     for _, module in imports(ast.parse(path.read_text(encoding='utf-8'))):
         subjects.add(place_of(module)[0])
         if module.split('.')[0] in ('support', 'bench'):
-            files.add(path.parents[1].joinpath(*module.split('.')).with_suffix('.py'))
+            tests = next(folder for folder in path.parents if folder.name == 'test')
+            files.add(tests.joinpath(*module.split('.')).with_suffix('.py'))
         files.add(path.parent / (module + '.py'))
     return subjects, {found for found in files if found.is_file()}
 
@@ -89,7 +90,8 @@ class Copy:
         package = self.folder / 'src' / 'mhri'
         for subject in self.gone:
             shutil.rmtree(str(package / subject))
-            shutil.rmtree(str(self.folder / 'test' / subject), ignore_errors=True)
+            for tests in (self.folder / 'test').glob('*/' + subject):
+                shutil.rmtree(str(tests))
         for rows in (package / 'screen' / 'parts.py', self.folder / 'resource' / 'inputs.yaml'):
             rows.write_text(''.join(
                 line for line in rows.read_text().splitlines(True)
@@ -164,7 +166,7 @@ def test_without_any_all_else_runs(system, copy_without):
     copy.python(system, copy.folder / 'test' / 'support' / 'start_up.py', 'screen')
     system.kill(mux)
     tests = [path for subject in BY_NAME
-             for path in sorted((copy.folder / 'test' / subject).glob('test_*.py'))]
+             for path in sorted((copy.folder / 'test/unit' / subject).glob('test_*.py'))]
     # The search for states takes minutes.
     left = [path for path in tests
             if not needs(path, copy.gone) and not path.name.startswith('test_every_state')]

@@ -54,29 +54,29 @@ import time
 
 def test_meeting():
     here = pathlib.Path(__file__)
-    (here.parents[{0}] / (here.stem + '.came')).touch()
-    while len(list(here.parents[{0}].glob('*.came'))) < 3:
+    (here.parents[2] / (here.stem + '.came')).touch()
+    while len(list(here.parents[2].glob('*.came'))) < 3:
         time.sleep(0.02)
 """
 # What each ends with: passed, failed.
 ENDS = {
-    'map/test_a.py': (PASSES + '\n\n' + FAILS, 1, 1),
-    'map/test_b.py': ('import rospy\n', 0, 1),
-    'map/ros/test_pass.py': ('import rospy\n\n\n' + PASSES, 1, 0),
-    'map/ros/test_import.py': ('import no_such_module\n', 0, 1),
-    'map/ros/test_empty.py': ('', 0, 1),
-    'map/ros/test_crash.py': ('import os\n\n\ndef test_a():\n    os.abort()\n', 0, 1),
-    'map/ros/test_stop.py': ('import os\n\n\ndef test_a():\n    os._exit(0)\n', 0, 1),
-    'map/ros/test_mark.py': ('import pytest\npytestmark = pytest.mark.tiemd\n' + PASSES, 0, 1),
-    'map/ros/test_hang.py': ('import pytest\nimport time\n\n\n@pytest.mark.timeout(1)\n'
+    'unit/map/test_a.py': (PASSES + '\n\n' + FAILS, 1, 1),
+    'unit/map/test_b.py': ('import rospy\n', 0, 1),
+    'ros/map/test_pass.py': ('import rospy\n\n\n' + PASSES, 1, 0),
+    'ros/map/test_import.py': ('import no_such_module\n', 0, 1),
+    'ros/map/test_empty.py': ('', 0, 1),
+    'ros/map/test_crash.py': ('import os\n\n\ndef test_a():\n    os.abort()\n', 0, 1),
+    'ros/map/test_stop.py': ('import os\n\n\ndef test_a():\n    os._exit(0)\n', 0, 1),
+    'ros/map/test_mark.py': ('import pytest\npytestmark = pytest.mark.tiemd\n' + PASSES, 0, 1),
+    'ros/map/test_hang.py': ('import pytest\nimport time\n\n\n@pytest.mark.timeout(1)\n'
                              'def test_a():\n    time.sleep(600)\n', 0, 1),
-    'system/map/test_shows.py': (
+    'long/map/test_shows.py': (
         'import os\nimport subprocess\n\n\ndef test_a():\n'
         '    assert os.environ["ROS_MASTER_URI"].endswith(":9")\n'
         '    subprocess.check_call(["xdpyinfo"], stdout=subprocess.DEVNULL)\n', 1, 0),
-    'system/map/pass.test': (ROSTEST.format('pass_node', 'pass'), 2, 0),
-    'system/map/fail.test': (ROSTEST.format('fail_node', 'self.fail()'), 1, 1),
-    'system/map/exit.test': (ROSTEST.format('exit_node', 'os._exit(3)'), 0, 1),
+    'long/map/pass.test': (ROSTEST.format('pass_node', 'pass'), 2, 0),
+    'long/map/fail.test': (ROSTEST.format('fail_node', 'self.fail()'), 1, 1),
+    'long/map/exit.test': (ROSTEST.format('exit_node', 'os._exit(3)'), 0, 1),
 }
 AGAIN = re.compile(r'AGAIN (\S+): .*: passed (\d) of 3')
 
@@ -136,16 +136,17 @@ def package(tmp_path):
 
 def test_each_way_to_end_counts(package):
     status, lines = package.write(dict({name: text for name, (text, _, _) in ENDS.items()},
-                                       **{'system/map/node.py': NODE})).run_named()
+                                       **{'long/map/node.py': NODE})).run_named()
     counts = {name.replace('/', '-').rpartition('.')[0]: counts
               for name, (_, *counts) in ENDS.items()}
-    counts.update({'pure-1': counts.pop('map-test_a'), 'pure-2': counts.pop('map-test_b')})
+    counts.update({'pure-{}'.format(half): counts.pop('unit-map-test_' + name)
+                   for half, name in ((1, 'a'), (2, 'b'))})
     said = dict(re.match(r'(?:FAIL|  ok) +[0-9.]+ s  (\S+): (.*)', line).groups()
                 for line in lines if re.match('FAIL |  ok ', line))
     assert said == {name: '{} passed, {} failed'.format(*count) for name, count in counts.items()}
     # So does what had to be done more than once.
     assert sorted(line for line in lines if line.startswith('INSISTED ')) == [
-        'INSISTED system-map-{}: 3 times: a node'.format(name) for name in ('fail', 'pass')]
+        'INSISTED long-map-{}: 3 times: a node'.format(name) for name in ('fail', 'pass')]
     passes, failures = map(sum, zip(*counts.values()))
     assert (lines[-1], status) == ('{} passed, {} failed'.format(passes, failures), 1)
     assert len([line for line in lines if line.startswith('FAILED ')]) == failures
@@ -155,9 +156,9 @@ def test_each_way_to_end_counts(package):
 
 @pytest.mark.parametrize('tests, said, status', [
     ({}, '0 passed, 0 failed', 1),
-    ({'map/ros/test_a.py': 'import pytest\n\n\n@pytest.mark.skip\n' + PASSES},
+    ({'ros/map/test_a.py': 'import pytest\n\n\n@pytest.mark.skip\n' + PASSES},
      '0 passed, 0 failed, 1 skipped', 1),
-    ({'map/test_a.py': PASSES}, '1 passed, 0 failed', 0)])
+    ({'unit/map/test_a.py': PASSES}, '1 passed, 0 failed', 0)])
 def test_only_what_ran_and_passed_is_success(package, tests, said, status):
     done, lines = package.write(tests).run()
     assert (lines[-1], done) == (said, status)
@@ -166,23 +167,23 @@ def test_only_what_ran_and_passed_is_success(package, tests, said, status):
 def test_what_failed_passes_three_times_of_three_alone_or_is_a_failure(package):
     """The others of its file do not run again; a failure elsewhere changes nothing."""
     status, lines = package.write({
-        'map/ros/test_once.py': UNSOUND.format({1}) + '\n\n' + PASSES,
-        'map/ros/test_twice.py': UNSOUND.format({1, 4}),
-        'system/map/once.test': ROSTEST.format('once_node', 'test_unsound()'),
-        'system/map/node.py': NODE,
-        'map/test_a.py': UNSOUND.format({1}), 'scripts/test_lint.py': FAILS}).run()
+        'ros/map/test_once.py': UNSOUND.format({1}) + '\n\n' + PASSES,
+        'ros/map/test_twice.py': UNSOUND.format({1, 4}),
+        'long/map/once.test': ROSTEST.format('once_node', 'test_unsound()'),
+        'long/map/node.py': NODE,
+        'unit/map/test_a.py': UNSOUND.format({1}), 'lint/test_lint.py': FAILS}).run()
     assert (lines[-1], status) == ('4 passed, 3 failed', 1)
     assert dict(AGAIN.match(line).groups() for line in lines if line.startswith('AGAIN ')) == {
-        'map-ros-test_once': '3', 'map-ros-test_twice': '2', 'system-map-once': '3'}
+        'ros-map-test_once': '3', 'ros-map-test_twice': '2', 'long-map-once': '3'}
     assert [package.failures(path, 'try 1') for path in (
-        'map-ros-test_once/pytest.xml', 'system-map-once/mhri/rosunit-once_node.xml',
-        'map-ros-test_twice/pytest.xml')] == [0, 0, 1]
+        'ros-map-test_once/pytest.xml', 'long-map-once/mhri/rosunit-once_node.xml',
+        'ros-map-test_twice/pytest.xml')] == [0, 0, 1]
 
 
 @pytest.mark.parametrize('tests, count', [
-    ({'map/ros/test_a.py': '\n\n'.join('def test_{}():\n    assert False\n'.format(number)
+    ({'ros/map/test_a.py': '\n\n'.join('def test_{}():\n    assert False\n'.format(number)
                                        for number in range(11))}, 11),
-    ({'map/test_a.py': FAILS, 'map/ros/test_c.py': 'import no_such_module\n'}, 2)])
+    ({'unit/map/test_a.py': FAILS, 'ros/map/test_c.py': 'import no_such_module\n'}, 2)])
 def test_what_is_pure_or_did_not_begin_or_fails_often_does_not_run_again(package, tests, count):
     status, lines = package.write(tests).run()
     assert (lines[-1], status) == ('0 passed, {} failed'.format(count), 1)
@@ -191,13 +192,13 @@ def test_what_is_pure_or_did_not_begin_or_fails_often_does_not_run_again(package
 
 def test_two_files_run_at_a_time_and_what_is_pure_beside_them(package):
     assert package.write({
-        'map/ros/test_a.py': MEETS.format(2), 'map/ros/test_b.py': MEETS.format(2),
-        'map/test_c.py': MEETS.format(1)}).run()[1][-1] == '3 passed, 0 failed'
+        'ros/map/test_a.py': MEETS, 'ros/map/test_b.py': MEETS,
+        'unit/map/test_c.py': MEETS}).run()[1][-1] == '3 passed, 0 failed'
 
 
 def test_a_leftover_process_is_ended(package):
     _, lines = package.write({
-        'map/ros/test_leak.py': 'import subprocess\n\n\ndef test_leak():\n    subprocess.Popen('
+        'ros/map/test_leak.py': 'import subprocess\n\n\ndef test_leak():\n    subprocess.Popen('
                                 '["sleep", "600"], start_new_session=True)\n'}).run()
     assert lines[-1] == '1 passed, 0 failed'
     assert [line for line in lines if 'leftover process' in line and 'sleep 600' in line]
@@ -205,10 +206,10 @@ def test_a_leftover_process_is_ended(package):
 
 
 def test_an_interrupted_run_leaves_nothing(package):
-    package.write({'map/ros/test_{}.py'.format(number): 'import time\n\n\ndef test_a():\n'
+    package.write({'ros/map/test_{}.py'.format(number): 'import time\n\n\ndef test_a():\n'
                    '    time.sleep(600)\n' for number in range(3)})
     process = package.start()
-    log = package.results / 'map-ros-test_0' / 'log'
+    log = package.results / 'ros-map-test_0' / 'log'
     wait_for(lambda: log.exists() and 'test_0.py::' in log.read_text())
     process.send_signal(signal.SIGINT)
     process.communicate(timeout=60)
@@ -225,8 +226,8 @@ def test_wrong_arguments_are_refused_before_anything_is_installed(checkout, argu
 
 def test_fast_tests_need_neither_a_build_nor_ros_nor_a_screen(checkout):
     small = Package(checkout.root.parent).write({
-        'scripts/test_lint.py': 'def test_flake8():\n    pass\n\n\n' + FAILS,
-        'map/test_a.py': PASSES, 'map/test_b.py': PASSES, 'map/ros/test_c.py': FAILS})
+        'lint/test_lint.py': 'def test_flake8():\n    pass\n\n\n' + FAILS,
+        'unit/map/test_a.py': PASSES, 'unit/map/test_b.py': PASSES, 'ros/map/test_c.py': FAILS})
     shutil.copytree(str(small.root / 'test'), str(checkout.root / 'test'))
     status, output = checkout.run('--fast', script=checkout.script.with_name('mhri_test.sh'))
     assert (status, output.splitlines()[-1]) == (0, '3 passed, 0 failed')

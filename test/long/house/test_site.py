@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The documents as a site: built by mkdocs, which refuses pages that are missing or in no menu.
 
-test/house/test_documents.py checks the links of the sources; here only what the site makes of them.
+Links of the sources: test/unit/house/test_documents.py; here only what the site makes of them.
 """
 from html.parser import HTMLParser
 import shutil

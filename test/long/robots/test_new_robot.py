@@ -62,7 +62,7 @@ def test_mhri_types_lists_a_type_of_another_package(tmp_path):
     ('resource/crawler.yaml', ('linear_mps: 0.2', 'linear_mps: fast'), 'limits.linear_mps'),
     ('package.xml', ('crawler.yaml', 'lost.yaml'), 'resource/lost.yaml')])
 def test_mhri_types_names_an_export_that_is_left_out(tmp_path, file, change, named):
-    """What else may be wrong with one: test/graph/test_robot_exports.py."""
+    """What else may be wrong with one: test/unit/graph/test_robot_exports.py."""
     status, output, errors = types_with(tmp_path, {file: change})
     assert status == 1 and errors.count('\n') == 1
     assert str(tmp_path / 'crawler_robot') in errors and named in errors

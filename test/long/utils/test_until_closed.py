@@ -9,7 +9,7 @@ import subprocess
 from support.ros_system import wait_for
 import pytest
 
-SCRIPT = Path(__file__).resolve().parents[2] / 'utils' / 'host' / 'until_closed.sh'
+SCRIPT = Path(__file__).resolve().parents[3] / 'utils' / 'host' / 'until_closed.sh'
 # As roslaunch does: what it starts has a session of its own, and gets SIGINT when it is to end.
 PARENT = """
 import os, signal, subprocess, sys

@@ -9,7 +9,7 @@ import pytest
 import roslaunch.config
 import roslaunch.xmlloader
 
-LAUNCH = Path(__file__).resolve().parents[2] / 'launch'
+LAUNCH = Path(__file__).resolve().parents[3] / 'launch'
 MHRI = LAUNCH / 'mhri.launch'
 
 
@@ -144,6 +144,6 @@ def test_a_robot_with_a_master_of_its_own_has_link_and_guard(more, namespaces):
 
 def test_test_nodes_have_names_of_their_own():
     """A result file is called after its test node: a second one would write over the first."""
-    names = [test.get('test-name') for path in sorted(LAUNCH.parent.glob('test/system/*/*.test'))
+    names = [test.get('test-name') for path in sorted(LAUNCH.parent.glob('test/*/*/*.test'))
              for test in ElementTree.parse(str(path)).getroot().iter('test')]
     assert sorted(names) == sorted(set(names))

@@ -10,7 +10,7 @@ import sys
 
 import pytest
 
-SOURCES = Path(__file__).resolve().parents[2] / 'src'
+SOURCES = Path(__file__).resolve().parents[3] / 'src'
 # As OpenCV's own code does where numpy is loaded already.
 SWALLOWS = '''import os
 import signal

@@ -13,7 +13,7 @@ from mhri.base.robot_hardware import HardwareStopSpec, MotorPowerSpec
 from mhri.base.robot_types import (
     Export, Limits, load_robot_types, parse_robot_type, resolve_robot_type, Seen)
 
-RESOURCE = os.path.join(os.path.dirname(__file__), '..', '..', 'resource', 'robots')
+RESOURCE = os.path.join(os.path.dirname(__file__), '..', '..', '..', 'resource', 'robots')
 GOOD = 'name: crawler\nlimits: {linear_mps: 0.3, angular_rad_s: 1.0}\ncommand: cmd_vel\n'
 
 

@@ -10,7 +10,7 @@ from mhri.devices.pads import (
     choose_pad, choose_profile, load_profiles, PadInfo, same_guid, with_labels)
 from mhri.devices.profile import ANY, JoyRefused
 
-PADS = Path(__file__).resolve().parents[2] / 'resource' / 'pads'
+PADS = Path(__file__).resolve().parents[3] / 'resource' / 'pads'
 FILES = [(str(path), path.read_text(encoding='utf-8')) for path in sorted(PADS.glob('*.yaml'))]
 PROFILES, ERRORS = load_profiles(FILES)
 BY_NAME = {profile.name: profile for profile in PROFILES}

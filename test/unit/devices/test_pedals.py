@@ -14,7 +14,7 @@ from mhri.devices.pedals import (
     AXES, DRIVE, ENABLE, KEYS, load_pedal_profiles, parse_pedal_profile, PedalState)
 from mhri.driving.pad_accessories import PadAccessories, Use
 
-FOLDER = Path(__file__).resolve().parents[2] / 'resource' / 'pedals'
+FOLDER = Path(__file__).resolve().parents[3] / 'resource' / 'pedals'
 FILES = [(path, Path(path).read_text()) for path in sorted(glob.glob(str(FOLDER / '*.yaml')))]
 PROFILES, ERRORS = load_pedal_profiles(FILES)
 FORWARD = 1

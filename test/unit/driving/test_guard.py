@@ -22,7 +22,7 @@ from mhri.sensors import brake, readings
 from mhri.sensors.laser_scan import laser_scan
 
 HERE = Path(__file__).resolve().parent
-PATH = HERE.parents[1] / 'utils' / 'remote' / 'mhri_guard'
+PATH = HERE.parents[2] / 'utils' / 'remote' / 'mhri_guard'
 ROS = {'rospy', 'geometry_msgs.msg', 'std_msgs.msg'}
 # For its brake and the way back, where they are asked for.
 ROS_TO_LOOK = {'sensor_msgs.msg', 'nav_msgs.msg'}

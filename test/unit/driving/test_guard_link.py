@@ -10,7 +10,7 @@ from mhri.driving import guard_link
 from mhri.driving.guard_link import format_id, GuardLink, GuardState, parse_id, read_state
 from play_guard import load
 
-GUARD = load(str(Path(__file__).resolve().parents[2] / 'utils' / 'remote' / 'mhri_guard'))
+GUARD = load(str(Path(__file__).resolve().parents[3] / 'utils' / 'remote' / 'mhri_guard'))
 LONG = 'x' * 32
 
 

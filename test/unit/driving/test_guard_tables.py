@@ -7,7 +7,7 @@ from pathlib import Path
 from play_guard import load
 import pytest
 
-GUARD = load(str(Path(__file__).resolve().parents[2] / 'utils' / 'remote' / 'mhri_guard'))
+GUARD = load(str(Path(__file__).resolve().parents[3] / 'utils' / 'remote' / 'mhri_guard'))
 ZERO, INF, NAN = GUARD['ZERO'], math.inf, math.nan
 SOUTH = -0.5 * math.pi
 

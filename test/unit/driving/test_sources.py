@@ -11,7 +11,7 @@ from mhri.driving.sources import parse_mux_config
 PROFILE = 'name: p\nforward: {axis: 1}\nturn: {axis: 0}\n'
 ROW = '  - {name: joy, topic: /mux_in/joy, profile: p}\n'
 TAIL = 'speed_limit: {linear_mps: 0.5, angular_rad_s: 1.5}\n'
-RESOURCE = os.path.join(os.path.dirname(__file__), '..', '..', 'resource')
+RESOURCE = os.path.join(os.path.dirname(__file__), '..', '..', '..', 'resource')
 
 
 def parse(text, read=lambda name: ('p.yaml', PROFILE)):

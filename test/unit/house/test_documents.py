@@ -7,7 +7,7 @@ import re
 
 import pytest
 
-REPO = Path(__file__).resolve().parents[2]
+REPO = Path(__file__).resolve().parents[3]
 PAGES = sorted([REPO / 'README.md', REPO / 'CONTRIBUTING.md', *REPO.glob('doc/**/*.md')])
 LINK = re.compile(r'\]\(([^)\s]+)\)|<img src="([^"]+)"')
 HEADING = re.compile(r'^#+ (.*)$', re.M)

@@ -8,7 +8,7 @@ import sys
 
 import pytest
 
-REPO = Path(__file__).resolve().parents[2]
+REPO = Path(__file__).resolve().parents[3]
 SOURCE = REPO / 'src' / 'mhri'
 SPDX = ('# SPDX-FileCopyrightText: ', '# SPDX-License-Identifier: BSD-3-Clause')
 

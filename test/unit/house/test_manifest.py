@@ -10,7 +10,7 @@ import xml.etree.ElementTree
 
 import pytest
 
-REPO = Path(__file__).resolve().parents[2]
+REPO = Path(__file__).resolve().parents[3]
 ROOT = xml.etree.ElementTree.parse(str(REPO / 'package.xml')).getroot()
 # Modules whose package, or rosdep key, has another name.
 KEYS = {'aiohttp': 'python3-aiohttp', 'catkin_pkg': 'python3-catkin-pkg',

@@ -15,7 +15,7 @@ from mhri.link.robot_claims import (
 
 TYPES = {kind.name: kind for kind in (
     parse_robot_type(path.read_text(), path.name)
-    for path in pathlib.Path(__file__, '..', '..', '..', 'resource', 'robots').resolve()
+    for path in pathlib.Path(__file__, '..', '..', '..', '..', 'resource', 'robots').resolve()
     .glob('*.yaml'))}
 # A lab's own type, for a robot without a namespace on the host's master.
 TYPES['arm'] = parse_robot_type('''

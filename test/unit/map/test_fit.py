@@ -17,7 +17,7 @@ from mhri.sim.sensors import Laser
 
 from support.task_world import room
 
-REPO = Path(__file__).resolve().parents[2]
+REPO = Path(__file__).resolve().parents[3]
 PLAN = parse_plan((REPO / 'resource' / 'sim' / 'plan.yaml').read_text(), 'plan.yaml')
 GRID = grid_of_plan(PLAN)
 STARTS = 20

@@ -13,7 +13,7 @@ from mhri.robots.discovery import (
     TWIST)
 
 IGNORE = IgnoreList(('/rosout', '/*/rosout', '/bot*/helper'), ('mux', 'rqt_*'))
-RESOURCE = os.path.join(os.path.dirname(__file__), '..', '..', 'resource', 'discovery.yaml')
+RESOURCE = os.path.join(os.path.dirname(__file__), '..', '..', '..', 'resource', 'discovery.yaml')
 
 
 def state(*nodes):

@@ -9,7 +9,7 @@ from mhri.base.robot_types import load_robot_types
 from mhri.recording.folder import NotASession
 from mhri.session.foreign import may_be_replayed, name_of_file, robots_of_topics
 
-FOLDER = Path(__file__).resolve().parents[2] / 'resource' / 'robots'
+FOLDER = Path(__file__).resolve().parents[3] / 'resource' / 'robots'
 TYPES, _ = load_robot_types((path.name, path.read_text()) for path in sorted(FOLDER.glob('*.yaml')))
 ODOMETRY, SCAN, IMU = 'nav_msgs/Odometry', 'sensor_msgs/LaserScan', 'sensor_msgs/Imu'
 PICTURE = 'sensor_msgs/CompressedImage'

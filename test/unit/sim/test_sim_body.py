@@ -12,7 +12,7 @@ from mhri.base.config import ConfigError
 from mhri.base.robot_types import Limits
 from mhri.sim.body import Body, Bumper, parse_bodies
 
-BODIES_FILE = Path(__file__).resolve().parents[2] / 'resource' / 'sim' / 'bodies.yaml'
+BODIES_FILE = Path(__file__).resolve().parents[3] / 'resource' / 'sim' / 'bodies.yaml'
 BODIES = parse_bodies(BODIES_FILE.read_text(), 'bodies.yaml')
 LIMITS = {'turtlebot2': Limits(0.65, 3.14), 'turtlebot3_burger': Limits(0.22, 2.84),
           'turtlebot3_waffle': Limits(0.26, 1.82), 'holonomic': Limits(0.5, 2.0, True)}

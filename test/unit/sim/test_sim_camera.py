@@ -74,7 +74,7 @@ def test_wall_ahead_is_one_depth_from_edge_to_edge(yaw, wanted):
 
 
 def test_centre_agrees_with_the_laser_in_the_lab():
-    path = Path(__file__).resolve().parents[2] / 'resource' / 'sim' / 'plan.yaml'
+    path = Path(__file__).resolve().parents[3] / 'resource' / 'sim' / 'plan.yaml'
     lab = parse_plan(path.read_text(), str(path))
     camera, chance = Camera(lab), random.Random(3)
     laser = Laser(lab.walls, 0.1, 100.0, None, rays=1)

@@ -13,7 +13,7 @@ from mhri.sim.body import parse_bodies
 from mhri.sim.floor_map import grid_of_plan
 from mhri.sim.plan import parse_plan
 
-SIM = Path(__file__).resolve().parents[2] / 'resource' / 'sim'
+SIM = Path(__file__).resolve().parents[3] / 'resource' / 'sim'
 DRILLS = SIM.parent / 'drills'
 SHIPPED = parse_plan((SIM / 'plan.yaml').read_text(), 'plan.yaml')
 BODIES = parse_bodies((SIM / 'bodies.yaml').read_text(), 'bodies.yaml')

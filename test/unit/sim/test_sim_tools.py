@@ -14,7 +14,7 @@ from mhri.sim.lens import CENTRE_Y_PX, FOCAL_PX, HEIGHT
 from mhri.sim.plan import parse_plan
 from mhri.sim.tools import Actuator, CLEAN_PPM, DIM, gas_ppm, MAX_TILT_RAD, rows_of_tilt
 
-SIM = Path(__file__).resolve().parents[2] / 'resource' / 'sim'
+SIM = Path(__file__).resolve().parents[3] / 'resource' / 'sim'
 NOBODY = np.zeros(0, [('x', '<f8'), ('y', '<f8'), ('radius', '<f8'), ('height', '<f8'),
                       ('colour', 'u1', 3)])
 MAX_SHIFT = rows_of_tilt(MAX_TILT_RAD)

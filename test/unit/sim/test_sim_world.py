@@ -15,7 +15,7 @@ from mhri.sim.body import parse_bodies
 from mhri.sim.world import GHOST_S, look_in, World, world_path, WorldRefused
 from support.clock import Clock
 
-BODY = parse_bodies((Path(__file__).resolve().parents[2] / 'resource' / 'sim'
+BODY = parse_bodies((Path(__file__).resolve().parents[3] / 'resource' / 'sim'
                      / 'bodies.yaml').read_text(), 'bodies.yaml')['turtlebot2']
 # They need nothing but what is loaded here.
 PROCESSES = multiprocessing.get_context('fork')

@@ -10,7 +10,7 @@ import yaml
 from mhri.base.config import ConfigError
 from mhri.voice.language import DIRECTIONS, parse_language
 
-RESOURCE = Path(__file__).resolve().parents[2] / 'resource'
+RESOURCE = Path(__file__).resolve().parents[3] / 'resource'
 PATH = RESOURCE / 'voice' / 'english.yaml'
 TEXT = PATH.read_text()
 

@@ -23,7 +23,7 @@ from mhri.voice.language import parse_language
 from mhri.voice.sound import BLOCK_BYTES
 from mhri.voice.speech import NOT_SURE, STOP_RECORDING_S
 
-PATH = Path(__file__).resolve().parents[2] / 'resource' / 'voice' / 'english.yaml'
+PATH = Path(__file__).resolve().parents[3] / 'resource' / 'voice' / 'english.yaml'
 LANGUAGE = parse_language(PATH.read_text(), str(PATH))
 REST = Reading((0.0, 0.0))
 FORWARD = Reading((0.0, 0.5))

@@ -12,7 +12,7 @@ from mhri.voice.speech import (
     MAX_AGE_S, MAX_COMPUTED_S, NO_COMMAND, NOT_SURE, REST, STOP_RECORDING_S, SURE, SURE_OF_STOP,
     SURE_WHEN_HELD, VoiceRules)
 
-PATH = Path(__file__).resolve().parents[2] / 'resource' / 'voice' / 'english.yaml'
+PATH = Path(__file__).resolve().parents[3] / 'resource' / 'voice' / 'english.yaml'
 LANGUAGE = parse_language(PATH.read_text(), str(PATH))
 GRAMMAR = Grammar(LANGUAGE, ['bot1', 'bot2'], {'bot', 'lamp', 'on'}.__contains__,
                   [('light', 'lamp', None, ['on'])])
