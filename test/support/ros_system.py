@@ -309,10 +309,10 @@ class System:
 
     def __exit__(self, failure, *_):
         if failure is not None:
-            self._tell_ends()
+            self.tell_ends()
         self.close()
 
-    def _tell_ends(self):
+    def tell_ends(self):
         """Print how each process was and the end of what it said: to explain a failure far away."""
         for process in self._processes:
             code = process.poll()
