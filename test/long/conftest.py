@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A master, a publisher and disks for recordings that go wrong; a network of a test's own."""
+"""A publisher and disks for recordings that go wrong; a network of a test's own."""
 import os
 import subprocess
 import sys
@@ -10,17 +10,6 @@ import pytest
 
 from support import bad_radio
 from support.paths import SUPPORT
-from support.ros_system import System
-
-
-@pytest.fixture(scope='module')
-def system():
-    with System() as built:
-        built.start_master()
-        import rospy
-        rospy.init_node('recorder_faults', disable_signals=True)
-        yield built
-        rospy.signal_shutdown('done')
 
 
 @pytest.fixture(scope='module')

@@ -8,8 +8,11 @@ import time
 import pytest
 
 from support import graph
-from support.ros_system import children, System, wait_for
+from support.own_node import own_node
+from support.ros_system import children, wait_for
 from support.rostest_tools import LATE_S
+
+system = own_node('failing_test')
 
 ROBOTS = ['plain1', 'plain2']
 # The mux, of which one method fails once when a file is there.
@@ -43,8 +46,7 @@ BEAT_S = 0.1
 
 
 @pytest.fixture(scope='module')
-def world():
-    import rospy
+def world(system):
     from support.plain_world import World
 
     class FailingWorld(World):
@@ -62,13 +64,9 @@ def world():
             os.rename(path + '.new', path)
             return when
 
-    with System() as system:
-        system.start_master()
-        rospy.init_node('failing_test', disable_signals=True)
-        made = FailingWorld(system, ROBOTS)
-        yield made
-        made.end()
-        rospy.signal_shutdown('done')
+    made = FailingWorld(system, ROBOTS)
+    yield made
+    made.end()
 
 
 def log_of(world):

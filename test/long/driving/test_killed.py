@@ -17,8 +17,11 @@ import xmlrpc.client
 import pytest
 
 from support import graph
+from support.own_node import own_node
 from support.paths import GUARD
-from support.ros_system import child_processes, freeze, System, thaw, wait_for
+from support.ros_system import child_processes, freeze, thaw, wait_for
+
+system = own_node('killed_test')
 
 ROBOTS = ['plain1', 'plain2', 'plain3', 'plain4']
 KILLS = int(os.environ.get('MHRI_KILLS', '4'))
@@ -29,16 +32,11 @@ LEASED_S = 0.4
 
 
 @pytest.fixture(scope='module')
-def world():
-    import rospy
+def world(system):
     from support.plain_world import World
-    with System() as system:
-        system.start_master()
-        rospy.init_node('killed_test', disable_signals=True)
-        made = World(system, ROBOTS)
-        yield made
-        made.end()
-        rospy.signal_shutdown('done')
+    made = World(system, ROBOTS)
+    yield made
+    made.end()
 
 
 def in_time(zeros, limit_s):

@@ -21,7 +21,10 @@ import pytest
 from support import graph
 from support.hostile import Hostile, is_long, seed_of
 from support.hostile_wire import call, class_of, handshake, torn_call, torn_class
+from support.own_node import own_node
 from support.ros_system import family_of, wait_for
+
+system = own_node('hostile_nodes')
 
 FACTOR = 20 if is_long() else 1
 MESSAGES = 30 * FACTOR

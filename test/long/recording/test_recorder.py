@@ -14,9 +14,12 @@ import time
 import pytest
 
 from mhri.recording.recording import ENDED, FAILED, RECORDING, RecordingLimits
+from support.own_node import own_node
 from support.paths import SUPPORT
 from support.recordings import numbers_in, record
 from support.ros_system import wait_for
+
+system = own_node('recorder_faults')
 
 MB = 10 ** 6
 

@@ -15,8 +15,11 @@ import pytest
 import rosbag
 
 from support import graph
+from support.own_node import own_node
 from support.ros_system import wait_for
 from support.rostest_tools import measured
+
+system = own_node('recording_killed')
 
 IMU = '/bot1/mobile_base/sensors/imu_data'
 START_S = 120.0

@@ -13,7 +13,10 @@ import pytest
 import rosbag
 
 from mhri.recording.folder import bags_of, read_events
+from support.own_node import own_node
 from support.ros_system import wait_for
+
+system = own_node('session_disk')
 
 TOPIC = '/mux_in/lab'
 TIMEOUT_S = 60.0
