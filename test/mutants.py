@@ -176,7 +176,7 @@ class Finder(ast.NodeVisitor):
         for line in self._source.splitlines(True):
             self._lines.append(self._lines[-1] + len(line))
         body = ast.parse(self._source).body
-        # The rest of the guard is its node, which test/long/robot_lines drives.
+        # The rest of the guard is its node, which test/e2e/driving/test_guard.py drives.
         end = next((number for number, node in enumerate(body)
                     if getattr(node, 'name', '') == 'make_clock'), len(body))
         self._names = {node.id for part in body[:end] for node in ast.walk(part)

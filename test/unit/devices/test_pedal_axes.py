@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Rudder pedals: found among joysticks, read once every axis is known, lost.
 
-The joysticks are made up here; test/long/devices/test_pedal.py has SDL's own.
+The joysticks are made up here; test/e2e/devices/test_pedal.py has SDL's own.
 """
 import pytest
 

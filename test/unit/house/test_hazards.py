@@ -51,6 +51,18 @@ def test_a_row_is_whole(row):
         assert not any(map(_SKIPPED.search, marks)), test
 
 
+def test_each_promise_from_outside_has_files_and_each_file_a_promise():
+    text = (REPO / 'doc' / 'developing.md').read_text(encoding='utf-8')
+    head = '| promise | files of `test/e2e` |'
+    rows = text[text.index(head):].partition('\n\n')[0].splitlines()[2:]
+    named = [re.findall(r'`(\w+/\w+\.(?:py|test))`', row.split(' | ')[-1]) for row in rows]
+    assert all(named), rows
+    e2e = REPO / 'test' / 'e2e'
+    assert sorted(sum(named, [])) == sorted(
+        path.relative_to(e2e).as_posix() for kind in ('test_*.py', '*.test')
+        for path in e2e.rglob(kind))
+
+
 @pytest.mark.parametrize('group', hazards.promises())
 def test_each_promise_names_tests_that_are_there(group):
     rows = hazards.promises()[group]
