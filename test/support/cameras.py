@@ -4,6 +4,7 @@
 import os
 import sys
 import threading
+import unittest
 
 import cv2
 import rospy
@@ -13,7 +14,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..
 
 
 from support.pictures import colour_picture  # noqa: E402
-from support.rostest_tools import Process  # noqa: E402
+from support.node_tools import Process  # noqa: E402
 
 RGB = colour_picture(320, 240)
 RATE_HZ = 30.0
@@ -56,6 +57,22 @@ class CameraProcess(Process):
 
     def __init__(self, topic, name):
         super().__init__([sys.executable, os.path.realpath(__file__), topic, '__name:=' + name])
+
+
+class CameraCase(unittest.TestCase):
+    """Tests that end what they began."""
+
+    def setUp(self):
+        self._begun = []
+
+    def tearDown(self):
+        for thing in reversed(self._begun):
+            getattr(thing, 'stop', getattr(thing, 'end', getattr(thing, 'close', None)))()
+
+    def begin(self, thing):
+        """Return a thing that is ended after the test."""
+        self._begun.append(thing)
+        return thing
 
 
 if __name__ == '__main__':

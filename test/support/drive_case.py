@@ -16,7 +16,7 @@ from std_srvs.srv import SetBool
 from support import graph
 from support.fake_mux import FakeOperator, StateEar
 from support.ros_system import children, wait_for
-from support.rostest_tools import measured, NEUTRAL, Process, Stick
+from support.node_tools import measured, NEUTRAL, Process, Stick
 from support.velocity import VelocityEnd
 
 ZERO = (0.0, 0.0)

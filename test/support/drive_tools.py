@@ -6,7 +6,7 @@ import time
 from geometry_msgs.msg import PoseStamped
 
 from support.drive_case import DriveCase
-from support.rostest_tools import Recorder
+from support.node_tools import Recorder
 from support.ros_system import wait_for
 
 # The wall to the east of the hall [m].

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""An input node in a process, as the rostests of pad, pedal and voice use it."""
+"""An input node in a process, as the tests of pad, pedal and voice use it."""
 from collections import namedtuple
 import unittest
 
@@ -11,7 +11,7 @@ from sensor_msgs.msg import Joy
 from mhri.msg import ControlMode
 from mhri.srv import SetSuspended
 from support import graph
-from support.rostest_tools import measured, Recorder, state_recorder, twist_recorder
+from support.node_tools import measured, Recorder, state_recorder, twist_recorder
 from support.ros_system import wait_for
 
 START_S = 30.0

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The pad's node with virtual pads, as the rostests use it."""
+"""The pad's node with virtual pads, for tests."""
 import contextlib
 import os
 

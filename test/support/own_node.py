@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A test file that is a node itself, on a master of its own."""
+"""The fixture of test files that are ROS nodes themselves."""
 from pathlib import Path
 
 import pytest
@@ -10,9 +10,11 @@ from support.ros_system import System, wait_for
 
 
 def own_node(name, launch=''):
-    """Return the fixture that the tests of a file have: its :class:`System`, and this node in it.
+    """Return a fixture: a :class:`System` with a master, in which this process is a node.
 
-    :param launch: a launch file beside the test file, which is started first
+    All tests of the file use it, whether they ask for it or not.
+
+    :param launch: a launch file beside the test file, started before the node
     """
     @pytest.fixture(scope='module', autouse=True)
     def system(request):

@@ -10,7 +10,7 @@ from nav_msgs.msg import Odometry
 import rospy
 
 from mhri.robots.link import Motion
-from support import graph, rostest_tools
+from support import graph, node_tools
 from support.ros_system import insist, wait_for
 
 
@@ -137,7 +137,7 @@ class RobotLog:
         return max(since, after[0][0]) if after else None
 
 
-class Stick(rostest_tools.Stick):
+class Stick(node_tools.Stick):
     """The stick of a pedal, whose node this process is."""
 
     def __init__(self, topic=graph.PEDAL):

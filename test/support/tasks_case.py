@@ -17,7 +17,7 @@ from std_srvs.srv import SetBool
 
 from support import graph
 from support.paths import MESSAGES
-from support.rostest_tools import NEUTRAL, Recorder, Stick, velocity
+from support.node_tools import NEUTRAL, Recorder, Stick, velocity
 from support.ros_system import insist, NotYet, wait_for
 
 sys.path.insert(0, MESSAGES)

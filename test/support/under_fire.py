@@ -200,7 +200,7 @@ class UnderFire:
 
     def zeros(self, since, what):
         """Wait until every robot has a zero; return how long after a time the last one had it."""
-        from support.rostest_tools import measured
+        from support.node_tools import measured
 
         def found():
             return [next((word[0] for word in log.after(since) if not any(word[1:])), None)

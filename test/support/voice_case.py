@@ -16,7 +16,7 @@ from support import graph
 from support import speech
 from support.input_nodes import InputCase, InputNode, START_S
 from support.room import Room
-from support.rostest_tools import measured, moves, NEUTRAL, Process, Recorder, Stick
+from support.node_tools import measured, moves, NEUTRAL, Process, Recorder, Stick
 from support.ros_system import insist, NotYet, wait_for
 
 ROBOTS = ['bot1', 'bot2', 'rover']

@@ -6,7 +6,6 @@ import signal
 import statistics
 import threading
 import time
-import unittest
 
 import cv2
 import numpy as np
@@ -16,11 +15,11 @@ from std_msgs.msg import String
 
 from mhri.camera.depth_codec import encode_depth
 from mhri.camera.ros.camera_feed import CameraFeed
-from support.cameras import Camera, CameraProcess, jpeg, raw
+from support.cameras import Camera, CameraCase, CameraProcess, jpeg, raw
 from support.own_node import own_node
 from support.pictures import colour_picture, depth_picture
 from support.ros_system import wait_for
-from support.rostest_tools import measured
+from support.node_tools import measured
 
 system = own_node('camera_feed')
 
@@ -34,18 +33,7 @@ def compressed_depth(pixels, codec):
     return CompressedImage(format=fmt, data=data)
 
 
-class CameraFeedTest(unittest.TestCase):
-
-    def setUp(self):
-        self._begun = []
-
-    def tearDown(self):
-        for thing in reversed(self._begun):
-            getattr(thing, 'stop', getattr(thing, 'end', getattr(thing, 'close', None)))()
-
-    def begin(self, thing):
-        self._begun.append(thing)
-        return thing
+class CameraFeedTest(CameraCase):
 
     def feed(self, robot, kind='rgb', topics=('camera/image_raw',), **more):
         feed = self.begin(CameraFeed(robot, topics, kind, **more))

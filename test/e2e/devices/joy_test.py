@@ -22,7 +22,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..
 from support import graph  # noqa: E402
 from support.input_nodes import InputCase  # noqa: E402
 from support.joy_tools import JoyNode, NO_PADS, PS3  # noqa: E402
-from support.rostest_tools import measured, moves, rests  # noqa: E402
+from support.node_tools import measured, moves, rests  # noqa: E402
 from support.ros_system import wait_for  # noqa: E402
 
 

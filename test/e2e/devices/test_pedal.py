@@ -17,7 +17,7 @@ from support.input_nodes import InputCase, InputNode, is_neutral, START_S
 from support.joy_tools import NO_PADS
 from support.own_node import own_node
 from support.ros_system import wait_for
-from support.rostest_tools import measured, moves, Process, rests
+from support.node_tools import measured, moves, Process, rests
 from support.virtual_pad import PadProcess
 
 system = own_node('pedal', 'pedal.launch')

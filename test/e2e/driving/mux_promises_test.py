@@ -24,7 +24,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..
 
 from support import graph  # noqa: E402
 from support.fake_mux import FakeOperator, StateEar  # noqa: E402
-from support.rostest_tools import (  # noqa: E402
+from support.node_tools import (  # noqa: E402
     advice_recorder, FORWARD, measured, moves, NEUTRAL, Process, Recorder, rests, state_recorder,
     Stick, StickProcess, TIMEOUT_S, velocity)
 from support.ros_system import wait_for  # noqa: E402

@@ -21,7 +21,7 @@ from support.drive_case import DriveCase, ZERO
 from support.own_node import own_node
 from support.paths import SUPPORT
 from support.ros_system import freeze, thaw, wait_for
-from support.rostest_tools import measured, Process
+from support.node_tools import measured, Process
 from support.velocity import VelocityEnd
 
 system = own_node('drive')

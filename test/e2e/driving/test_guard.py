@@ -17,7 +17,7 @@ from mhri.driving.guard_link import GuardLink
 from support.own_node import own_node
 from support.paths import GUARD, SUPPORT
 from support.ros_system import freeze, thaw, wait_for
-from support.rostest_tools import measured
+from support.node_tools import measured
 from support.velocity import VelocityEnd
 
 system = own_node('guard')

@@ -14,7 +14,7 @@ from support.drive_case import DriveCase
 from support.own_node import own_node
 from support.paths import GUARD, SUPPORT
 from support.ros_system import freeze, thaw, wait_for
-from support.rostest_tools import Process
+from support.node_tools import Process
 from support.velocity import VelocityEnd
 
 system = own_node('guarded')

@@ -16,7 +16,7 @@ from mhri.recording.recording import ros_home
 from support import graph
 from support.own_node import own_node
 from support.ros_system import insist, wait_for
-from support.rostest_tools import (
+from support.node_tools import (
     FORWARD, measured, moves, NEUTRAL, Recorder, rests, start_mux, state_recorder, Stick,
     twist_recorder)
 

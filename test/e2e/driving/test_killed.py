@@ -41,7 +41,7 @@ def world(system):
 
 def in_time(zeros, limit_s):
     """Return whether zeros came in time, which is less where kills are counted on an idle one."""
-    from support.rostest_tools import LATE_S
+    from support.node_tools import LATE_S
     return max(zeros) <= limit_s + (0.0 if 'MHRI_KILLS' in os.environ else LATE_S)
 
 

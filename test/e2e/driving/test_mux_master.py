@@ -1,37 +1,26 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The master restarted under a mux that drives: it stops the robots, registers again, and works.
-
-The master of rostest itself cannot be restarted, so this test runs one of its own on a free port,
-and is no ROS node towards the outer one.
-"""
-import os
+"""The master restarted under a mux that drives: it stops the robots, registers again, and works."""
 import signal
 import time
 import unittest
 
+import pytest
 import rosgraph
 import rospy
 from std_srvs.srv import SetBool
 
 from support import graph
-from support.ros_system import free_port, freeze, thaw, wait_for
-from support.rostest_tools import (
+from support.node_tools import (
     measured, moves, NEUTRAL, Process, rests, start_mux, state_recorder, Stick,
     TIMEOUT_S, twist_recorder)
+from support.own_node import own_node
+from support.ros_system import freeze, thaw, wait_for
 
-PORT = free_port()
+system = own_node('mux_master')
+
 # Commands are 50 ms apart: none for so long, and none comes any more [s].
 SILENCE_S = 0.4
-MASTER = {'ROS_MASTER_URI': 'http://127.0.0.1:{}'.format(PORT), 'ROS_IP': '127.0.0.1'}
-os.environ.update(MASTER)
-
-
-def start_master():
-    """Start a master on the port of this test and wait until it answers."""
-    master = Process(['rosmaster', '--core', '-p', str(PORT)], MASTER)
-    wait_for(rosgraph.Master('/mux_master_test').is_online, what='no master')
-    return master
 
 
 class MuxMaster(unittest.TestCase):
@@ -39,9 +28,7 @@ class MuxMaster(unittest.TestCase):
 
     @classmethod
     def setUpClass(cls):
-        """Start a master, a mux and a stick."""
-        cls.master = start_master()
-        rospy.init_node('mux_master_listener', disable_signals=True)
+        """Start a mux and a stick."""
         cls.twists = twist_recorder()
         cls.waits = state_recorder('waits_for')
         cls.stick = Stick(graph.STICK)
@@ -58,10 +45,13 @@ class MuxMaster(unittest.TestCase):
 
     @classmethod
     def tearDownClass(cls):
-        """End all of them."""
+        """End both."""
         cls.stick.silence()
         cls.mux.end()
-        cls.master.end()
+
+    @pytest.fixture(autouse=True)
+    def _take(self, system):
+        self.system = system
 
     def _drive(self):
         self.stick.set_out(self.waits, self.twists)
@@ -73,8 +63,8 @@ class MuxMaster(unittest.TestCase):
         return [{name for name, nodes in group if '/mux' in nodes} for group in state]
 
     def _kill_master(self):
-        begun = self.master.send(signal.SIGKILL)
-        self.master.wait()
+        begun = time.monotonic()
+        self.system.kill(self.system.master)
         return begun
 
     def test_restarted_master_stops_the_robots_and_knows_the_mux_again(self):
@@ -89,14 +79,14 @@ class MuxMaster(unittest.TestCase):
         self.assertFalse([item for item in self.twists.since(first.at) if moves(item.value)])
 
         begun = time.monotonic()
-        type(self).master = start_master()
+        self.system.start_master()
         self._assert_registered(before)
         measured('registered again after the restart', time.monotonic() - begun)
         self.assertEqual(rospy.get_param(graph.SOURCES)[0]['name'], 'joy')
         self._drive()
         self._assert_new_listeners_hear({
             graph.MODE: 'source: "joy"', graph.COMMAND: 'linear:'})
-        answer = Process(['rosservice', 'call', graph.SET_STOP_ALL, 'true'], MASTER)
+        answer = Process(['rosservice', 'call', graph.SET_STOP_ALL, 'true'])
         self.assertEqual(answer.wait(), 0, answer.said())
         answer.end()
         self.waits.settle('release')
@@ -117,7 +107,7 @@ class MuxMaster(unittest.TestCase):
         for _ in range(2):
             self._drive()
             begun = self._kill_master()
-            type(self).master = start_master()
+            self.system.start_master()
             measured('master away for', time.monotonic() - begun)
             first = self.twists.wait(rests, begun)
             measured('first zero after a quick restart of the master', first.at - begun)
@@ -128,12 +118,12 @@ class MuxMaster(unittest.TestCase):
         """It takes calls and never answers; what it forgot, nobody knows."""
         self._release()
         self._drive()
-        hung = freeze(self.master.number)
+        hung = freeze(self.system.master.pid)
         try:
             zero = self.twists.wait(rests, hung)
             measured('first zero after the master hung', zero.at - hung, 1.5)
         finally:
-            thaw(self.master.number)
+            thaw(self.system.master.pid)
         self.twists.wait_silence(SILENCE_S)
         self._drive()
 
@@ -141,14 +131,14 @@ class MuxMaster(unittest.TestCase):
         """The zeros of its end do not wait for anybody: 20 Hz for half a second, then silence."""
         self._release()
         self._drive()
-        freeze(self.master.number)
+        freeze(self.system.master.pid)
         try:
             begun = self.mux.send(signal.SIGTERM)
             first = self.twists.wait(rests, begun)
             self.twists.wait_zeros(first)
             self.mux.wait()
         finally:
-            thaw(self.master.number)
+            thaw(self.system.master.pid)
         self._start_mux()
         measured('first zero of an end while the master hangs', first.at - begun, 0.05)
 
@@ -165,7 +155,7 @@ class MuxMaster(unittest.TestCase):
 
         :param words: {topic: what is heard there}
         """
-        late = {topic: Process(['rostopic', 'echo', '-n1', topic], MASTER) for topic in words}
+        late = {topic: Process(['rostopic', 'echo', '-n1', topic]) for topic in words}
         for process in late.values():
             self.addCleanup(process.end)
         for topic, process in late.items():

@@ -20,7 +20,7 @@ from support import graph
 from support.own_node import own_node
 from support.paths import SUPPORT
 from support.ros_system import tell, wait_for
-from support.rostest_tools import (
+from support.node_tools import (
     advice_recorder, FORWARD, measured, moves, NEUTRAL, Process, Recorder, rests, state_recorder,
     Stick, twist_recorder)
 

@@ -18,7 +18,7 @@ from support.own_node import own_node
 from support.paths import GUARD, SUPPORT
 from support.robots import Witness
 from support.ros_system import wait_for
-from support.rostest_tools import measured, Process
+from support.node_tools import measured, Process
 from support.velocity import VelocityEnd
 
 system = own_node('other_commanders')

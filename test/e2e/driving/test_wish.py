@@ -9,7 +9,7 @@ import rospy
 from support.drive_case import DriveCase
 from support.graph import SELECT
 from support.own_node import own_node
-from support.rostest_tools import Process
+from support.node_tools import Process
 from support.velocity import VelocityEnd
 
 system = own_node('wish')

@@ -25,7 +25,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.realpath(__file__)), '..
 
 
 from support import graph  # noqa: E402
-from support.rostest_tools import NEUTRAL, Recorder, Stick  # noqa: E402
+from support.node_tools import NEUTRAL, Recorder, Stick  # noqa: E402
 from mhri.msg import ControlMode, Place, Places, RunTaskAction, RunTaskGoal, TaskState  # noqa: E402
 from mhri.srv import FitPlace, SetFence, SetMark, SetPlace  # noqa: E402
 from support.fake_mux import FakeOperator, StateEar  # noqa: E402

@@ -21,7 +21,7 @@ from mhri.recording.ros.recorder import Recorder
 from support.own_node import own_node
 from support.paths import SUPPORT
 from support.ros_system import wait_for
-from support.rostest_tools import measured
+from support.node_tools import measured
 
 system = own_node('recorder')
 

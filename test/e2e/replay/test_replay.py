@@ -23,7 +23,7 @@ from support import graph
 from support import made_session as made
 from support.own_node import own_node
 from support.ros_system import insist, wait_for
-from support.rostest_tools import Process
+from support.node_tools import Process
 
 system = own_node('replay')
 

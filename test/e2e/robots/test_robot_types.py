@@ -27,7 +27,7 @@ from mhri.robots.ros.graph_scan import look_for_robots, shipped_ignore_list  # n
 from mhri.robots.ros.robot_monitors import RobotMonitors  # noqa: E402
 from support.fake_mux import FakeOperator  # noqa: E402
 from support.ros_system import insist, wait_for  # noqa: E402
-from support.rostest_tools import FORWARD, NEUTRAL, Process, start_mux, Stick  # noqa: E402
+from support.node_tools import FORWARD, NEUTRAL, Process, start_mux, Stick  # noqa: E402
 from support.surgery import forget  # noqa: E402
 
 system = own_node('robot_types')

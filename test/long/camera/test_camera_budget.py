@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The camera budget against real publishers: what it takes of them is counted where it is sent."""
 import time
-import unittest
 
 import rosgraph
 import rospy
@@ -12,10 +11,10 @@ from mhri.camera.budget import (
 from mhri.camera.ros.camera_budget import CameraBudget, PictureRequest
 from mhri.camera.ros.camera_feed import CameraFeed
 from mhri.screen.settings import PanelSettings
-from support.cameras import Camera, jpeg, raw, RATE_HZ, RGB
+from support.cameras import Camera, CameraCase, jpeg, raw, RATE_HZ, RGB
 from support.own_node import own_node
 from support.ros_system import wait_for
-from support.rostest_tools import measured
+from support.node_tools import measured
 
 system = own_node('camera_budget')
 
@@ -40,18 +39,7 @@ class CountedCamera(Camera):
             self.publisher.publish(self.message)
 
 
-class CameraBudgetTest(unittest.TestCase):
-
-    def setUp(self):
-        self._begun = []
-
-    def tearDown(self):
-        for thing in reversed(self._begun):
-            getattr(thing, 'stop', getattr(thing, 'end', getattr(thing, 'close', None)))()
-
-    def begin(self, thing):
-        self._begun.append(thing)
-        return thing
+class CameraBudgetTest(CameraCase):
 
     def feed(self, robot, grant=AS_IT_COMES, **more):
         feed = self.begin(CameraFeed(robot, ['camera/image_raw'], 'rgb', **more))

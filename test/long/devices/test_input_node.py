@@ -16,7 +16,7 @@ from mhri.srv import SetSuspended
 from support.input_nodes import joy_recorder
 from support.own_node import own_node
 from support.ros_system import wait_for
-from support.rostest_tools import measured, Recorder
+from support.node_tools import measured, Recorder
 
 system = own_node('input_node')
 

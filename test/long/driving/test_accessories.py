@@ -25,7 +25,7 @@ from support.drive_case import DriveCase
 from support.joy_tools import JoyNode, NO_PADS
 from support.own_node import own_node
 from support.ros_system import freeze, insist, wait_for
-from support.rostest_tools import measured
+from support.node_tools import measured
 
 system = own_node('accessories')
 

@@ -79,7 +79,7 @@ def see_flipper(robot, back):
 def inside():
     """Be the operator; end with an AssertionError where something is not so."""
     from support.far_world import BOTH_WAYS, FarWorld, ONE_WAY
-    from support.rostest_tools import measured
+    from support.node_tools import measured
     with FarWorld('far1') as world:
         robot, = world.robots
         for how, cut_s in [(ONE_WAY, 1.0), (BOTH_WAYS, 5.0), (ONE_WAY, LONGEST_CUT_S)]:

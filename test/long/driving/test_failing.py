@@ -10,7 +10,7 @@ import pytest
 from support import graph
 from support.own_node import own_node
 from support.ros_system import children, wait_for
-from support.rostest_tools import LATE_S
+from support.node_tools import LATE_S
 
 system = own_node('failing_test')
 

@@ -13,7 +13,7 @@ from support.drive_tools import HallCase
 from support.own_node import own_node
 from support.paths import GUARD
 from support.ros_system import freeze, thaw, wait_for
-from support.rostest_tools import measured, Process
+from support.node_tools import measured, Process
 from support.velocity import VelocityEnd
 
 system = own_node('guard_look', 'guard_look.launch')

@@ -15,7 +15,7 @@ from std_msgs.msg import Bool
 from support import graph
 from support.own_node import own_node
 from support.ros_system import children, freeze, thaw, wait_for
-from support.rostest_tools import (
+from support.node_tools import (
     measured, moves, Recorder, rests, start_mux, state_recorder, Stick, TIMEOUT_S, twist_recorder)
 
 system = own_node('mux_end')

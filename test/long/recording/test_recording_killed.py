@@ -17,7 +17,7 @@ import rosbag
 from support import graph
 from support.own_node import own_node
 from support.ros_system import wait_for
-from support.rostest_tools import measured
+from support.node_tools import measured
 
 system = own_node('recording_killed')
 

@@ -11,7 +11,7 @@ from support.windows import windows_called
 def test_the_robots_stand_still_within_600_ms():
     import rospy
     from support.robots import Witness, seconds_to_standstill
-    from support.rostest_tools import measured
+    from support.node_tools import measured
     with System() as system:
         system.screen()
         system.start_master()

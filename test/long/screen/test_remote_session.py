@@ -91,7 +91,7 @@ class Forwarded(PanelSession):
 
     def until_neutral(self, what, since):
         """Wait until the stick is let go, as soon as is promised, and the robot stands."""
-        from support.rostest_tools import measured
+        from support.node_tools import measured
         self.until(lambda: self.held_since() is None, what='the stick to be let go')
         measured('frozen while {} was held: stick at neutral'.format(what),
                  next(at for at, axes in self.sticks if at > since and not any(axes)) - since,

@@ -25,7 +25,7 @@ class Sideways(PanelSession):
         super().__init__([('turtlebot.launch', 'name:=' + name, 'type:=' + kind)
                           for name, kind in ((CAN, 'holonomic'), (CANNOT, 'turtlebot3_burger'))],
                          (CAN, CANNOT))
-        from support.rostest_tools import Recorder
+        from support.node_tools import Recorder
         from geometry_msgs.msg import Twist
         self.sent = {name: Recorder('/{}/cmd_vel'.format(name), Twist, lambda message: (
             message.linear.x, message.linear.y, message.angular.z)) for name in (CAN, CANNOT)}

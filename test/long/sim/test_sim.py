@@ -24,7 +24,7 @@ from kobuki_msgs.msg import MotorPower  # noqa: E402
 from support.heard import Heard, TIMEOUT_S  # noqa: E402
 from support.robots import Witness  # noqa: E402
 from support.ros_system import System, wait_for  # noqa: E402
-from support.rostest_tools import measured  # noqa: E402
+from support.node_tools import measured  # noqa: E402
 
 
 # What takes the power from its motors: topic, without, with.

@@ -16,7 +16,7 @@ from mhri.sim.faults import FAULTS
 from mhri.srv import SetFault
 from support.own_node import own_node
 from support.ros_system import wait_for
-from support.rostest_tools import Recorder
+from support.node_tools import Recorder
 
 system = own_node('sim_faults', 'sim_faults.launch')
 

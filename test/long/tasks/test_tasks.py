@@ -31,7 +31,7 @@ from mhri.msg import Places, TaskState
 from support.fake_mux import FakeOperator
 from support.own_node import own_node
 from support.ros_system import insist, NotYet, processes_with, wait_for
-from support.rostest_tools import measured, moves, Process, Recorder, rests
+from support.node_tools import measured, moves, Process, Recorder, rests
 from support.tasks_case import TIMEOUT_S, TasksCase
 
 system = own_node('tasks', 'tasks.launch')

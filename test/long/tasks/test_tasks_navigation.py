@@ -15,7 +15,7 @@ from mhri.msg import TaskState
 from support.graph import navigation
 from support.own_node import own_node
 from support.ros_system import freeze, insist, NotYet, processes_with, wait_for
-from support.rostest_tools import measured, moves, Process, rests
+from support.node_tools import measured, moves, Process, rests
 from support.tasks_case import TIMEOUT_S, TasksCase
 
 system = own_node('tasks_navigation', 'tasks.launch')

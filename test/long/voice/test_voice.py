@@ -13,7 +13,7 @@ from std_msgs.msg import Bool
 from support.input_nodes import is_neutral
 from support.own_node import own_node
 from support.ros_system import wait_for
-from support.rostest_tools import measured, moves, NEUTRAL, rests
+from support.node_tools import measured, moves, NEUTRAL, rests
 from support.voice_case import HEAR_S, LEFT_TWIST, ROBOTS, START_S, VoiceTest
 
 system = own_node('voice', 'voice.launch')

@@ -23,7 +23,7 @@ from support.drive_case import DriveCase
 from support.heard import Heard
 from support.own_node import own_node
 from support.ros_system import free_port, insist, wait_for
-from support.rostest_tools import measured, Process
+from support.node_tools import measured, Process
 from support.velocity import VelocityEnd
 from support.web_page import AHEAD, CENTRE, Page
 

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the rostests share: messages noted with their times, sticks held, processes begun and ended.
+"""What tests that are nodes share: recorders of messages, sticks that are held, processes.
 
 Nothing here sleeps to let something happen: whoever waits, waits for a condition.
 """
