@@ -14,7 +14,7 @@ def own_node(name, launch=''):
 
     All tests of the file use it, whether they ask for it or not.
 
-    :param launch: a launch file beside the test file, started before the node
+    :param launch: a launch file, from where the test file is, started before the node
     """
     @pytest.fixture(scope='module', autouse=True)
     def system(request):
@@ -23,7 +23,7 @@ def own_node(name, launch=''):
             made.start_master()
             if launch:
                 launched = made.start('roslaunch', str(
-                    Path(str(request.fspath)).with_name(launch)))
+                    Path(str(request.fspath)).parent / launch))
                 # All parameters are set before the first of its nodes starts.
                 wait_for(lambda: 'started with pid' in Path(launched.log).read_text(), what=launch)
             rospy.init_node(name, disable_signals=True)

@@ -17,7 +17,7 @@ from support.own_node import own_node
 from support.ros_system import wait_for
 from support.two_lasers import TwoLasers
 
-system = own_node('brake', 'brake.launch')
+system = own_node('brake', '../../e2e/driving/brake.launch')
 
 SPEED_MPS = 0.6
 

@@ -34,7 +34,7 @@ from support.ros_system import insist, NotYet, processes_with, wait_for
 from support.node_tools import measured, moves, Process, Recorder, rests
 from support.tasks_case import TIMEOUT_S, TasksCase
 
-system = own_node('tasks', 'tasks.launch')
+system = own_node('tasks', '../../e2e/tasks/tasks.launch')
 
 
 def task_tool(*words):

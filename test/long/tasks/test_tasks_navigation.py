@@ -18,7 +18,7 @@ from support.ros_system import freeze, insist, NotYet, processes_with, wait_for
 from support.node_tools import measured, moves, Process, rests
 from support.tasks_case import TIMEOUT_S, TasksCase
 
-system = own_node('tasks_navigation', 'tasks.launch')
+system = own_node('tasks_navigation', '../../e2e/tasks/tasks.launch')
 
 
 class TasksNavigation(TasksCase):

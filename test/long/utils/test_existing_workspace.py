@@ -7,10 +7,8 @@ import signal
 import subprocess
 
 from support.checkout import REPO
-
-from whole_run import new_checkout
-
 from support.ros_system import System, wait_for
+from support.whole_run import new_checkout
 
 # What the setup file of a workspace sets.
 WORKSPACE = ('CMAKE_PREFIX_PATH', 'PYTHONPATH', 'ROS_PACKAGE_PATH')

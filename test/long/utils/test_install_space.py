@@ -5,12 +5,11 @@ import os
 import signal
 import subprocess
 
-from support.checkout import REPO
 import pytest
 
-from whole_run import in_new_terminal, new_checkout, Run
-
+from support.checkout import REPO
 from support.ros_system import free_port, System, wait_for
+from support.whole_run import in_new_terminal, new_checkout, Run
 
 # The folders that are installed as they are.
 SHARED = ('launch', 'resource', 'utils')

@@ -8,13 +8,12 @@ import subprocess
 import time
 import xmlrpc.client
 
-from support import graph
 import cv2
 import pytest
 
-from whole_run import in_new_terminal, new_checkout, Run, SCRIPT
-
+from support import graph
 from support.ros_system import free_port, wait_for
+from support.whole_run import in_new_terminal, new_checkout, Run, SCRIPT
 
 START_S = 180.0
 # A network of its own with nothing in it but itself.
