@@ -73,3 +73,29 @@ class HallCase(DriveCase):
             return drives and [gap_m]
         gap_m, = self.keep_on(stands, 'it to stand', linear)
         return gap_m
+
+
+class BrakeCase(HallCase):
+    """In which the brake is off again after each test."""
+
+    speed_mps = 0.6
+
+    def tearDown(self):
+        self.ask(False)
+
+    def ask(self, brake):
+        """Switch the brake on or off."""
+        self.operator.set(1.0, brake=brake)
+        self.state.wait(lambda state: state.settings.brake == brake, 'the brake')
+
+    def bot1(self):
+        """Select the simulated robot, and centre the stick."""
+        self.operator.check('bot1')
+        self.ready('bot1')
+
+    def until_it_brakes(self, *states):
+        """Drive bot1 ahead until its brake is in one of these states; return what is said then."""
+        def acts():
+            robot = self.state.robot('bot1')
+            return robot.brake in states and robot
+        return self.keep_on(acts, 'the brake to act', self.speed_mps)
