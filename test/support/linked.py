@@ -10,7 +10,6 @@ import sys
 import threading
 import time
 
-
 from support import graph
 from support.paths import SUPPORT
 from support.ros_system import child_processes, free_port, System, wait_for
@@ -122,3 +121,25 @@ class Linked:
         """End both systems."""
         self.robot.close()
         self.host.close()
+
+
+def running_linked():
+    """Yield a :class:`Linked` with an operator and an eye on the robot, for a fixture."""
+    import rospy
+    from mhri.graph.ros.master_watch import MasterWatch
+    from mhri.link.ros.carrier import load_library
+    from support.robots import Witness
+    # Without it, this says the remedy.
+    load_library()
+    built = Linked()
+    try:
+        rospy.init_node('link_test', disable_signals=True)
+        MasterWatch().start()
+        built.watch_drive()
+        built.operator = Operator()
+        built.witness = Witness('bot1')
+        wait_for(built.witness.live, LONG_S, 'the odometry of bot1 on the host')
+        yield built
+    finally:
+        built.close()
+        rospy.signal_shutdown('done')

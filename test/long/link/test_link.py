@@ -1,19 +1,15 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""A robot on a master of its own, linked to the host: driven, looked at, and whatever dies."""
+"""A robot on a master of its own, linked to the host: who is heard, and what is carried."""
 import subprocess
 import sys
 import threading
-import time
 
 import pytest
 
-from support import graph
-from support.linked import Linked, LONG_S, Operator
-from support.ros_system import freeze, thaw, wait_for
+from support.linked import LONG_S, running_linked
+from support.ros_system import wait_for
 
-# The lease is 0.3 s, and the robot brakes; the rest is for a busy computer.
-STANDS_S = 3.0
 # Counts on another master how often the mux ends on purpose.
 ENDINGS = '''
 import rospy
@@ -34,24 +30,7 @@ while rest:
 
 @pytest.fixture(scope='module')
 def lab():
-    import rospy
-    from mhri.graph.ros.master_watch import MasterWatch
-    from mhri.link.ros.carrier import load_library
-    from support.robots import Witness
-    # Without it, this says the remedy.
-    load_library()
-    built = Linked()
-    try:
-        rospy.init_node('link_test', disable_signals=True)
-        MasterWatch().start()
-        built.watch_drive()
-        built.operator = Operator()
-        built.witness = Witness('bot1')
-        wait_for(built.witness.live, LONG_S, 'the odometry of bot1 on the host')
-        yield built
-    finally:
-        built.close()
-        rospy.signal_shutdown('done')
+    yield from running_linked()
 
 
 def listeners_of_camera(lab):
@@ -144,41 +123,6 @@ def test_pictures_only_for_those_who_look(lab):
     assert listeners_of_camera(lab) == 1
     view.unregister()
     wait_for(lambda: listeners_of_camera(lab) == 0, LONG_S, 'the camera to be left alone')
-
-
-@pytest.mark.parametrize('side', ['host', 'robot'])
-def test_what_a_side_that_hung_has_kept_is_not_obeyed(lab, side):
-    lab.drive(lab.operator)
-    process = lab.link_of_host if side == 'host' else lab.node_of_robot()
-    since = freeze(process.pid)
-    try:
-        at = wait_for(lambda: lab.stood_at(since), LONG_S, 'it to stand')
-        # From now on the mux sends zeros alone; what they said before is older than 0.3 s then.
-        wait_for(lambda: lab.row().stands, LONG_S, 'the mux to keep it standing')
-        time.sleep(0.4)
-    finally:
-        thaw(process.pid)
-    wait_for(lab.witness.live, LONG_S, 'the odometry to be back')
-    # The stick was never let go.
-    time.sleep(1.0)
-    assert [row for row in lab.rows() if row[0] > at and abs(row[2]) > 0.02] == []
-    lab.drive(lab.operator)
-    lab.operator.stick.hold(0.0, 0.0)
-
-
-def test_a_stop_holds_on_the_robot_until_it_is_released(lab):
-    import rospy
-    from std_srvs.srv import SetBool
-    set_stop = rospy.ServiceProxy(graph.SET_STOP_ALL, SetBool)
-    lab.drive(lab.operator)
-    assert set_stop(True).success
-    wait_for(lambda: lab.row().stop_confirmed, LONG_S, 'the guard to confirm the stop')
-    wait_for(lambda: not lab.moves(), LONG_S, 'it to stand')
-    lab.operator.stick.hold(0.0, 0.0)
-    wait_for(lambda: set_stop(False).success, LONG_S, 'the stop to be released', 0.1)
-    wait_for(lambda: not lab.row().stop_confirmed, LONG_S, 'the guard to let go')
-    lab.drive(lab.operator)
-    lab.operator.stick.hold(0.0, 0.0)
 
 
 def test_the_link_says_how_good_it_is(lab):
