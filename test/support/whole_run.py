@@ -6,14 +6,20 @@ import shutil
 import signal
 import subprocess
 import uuid
+import xmlrpc.client
 
 from support.checkout import children_with, REPO
+from support.ros_system import free_port
 
 SCRIPT = REPO / 'utils' / 'host' / 'mhri_run.sh'
+START_S = 180.0
 
 
 class Run:
-    """One run of the script, without a display, as the operator of a bare machine has it."""
+    """One run of the script, without a display, as the operator of a bare machine has it.
+
+    It ends with the block that it is used in.
+    """
 
     def __init__(self, folder, arguments, before=(), script=SCRIPT):
         self.mark = 'MHRI_E2E={}'.format(uuid.uuid4())
@@ -40,11 +46,36 @@ class Run:
         assert children_with(self.mark) == []
         return status
 
-    def end(self):
-        """End it, whatever it does, for a test that failed."""
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
         if self.process.poll() is None:
             self.process.send_signal(signal.SIGTERM)
             self.process.wait(timeout=120)
+
+
+def new_master():
+    """Return (address, proxy) of a master that the script will start."""
+    uri = 'http://127.0.0.1:{}'.format(free_port())
+    return uri, xmlrpc.client.ServerProxy(uri)
+
+
+def node_uri(proxy, node):
+    """Return the address of a registered node, or None."""
+    try:
+        code, _, uri = proxy.lookupNode('/test', node)
+    except OSError:
+        return None
+    return uri if code == 1 else None
+
+
+def publishers(proxy, topic):
+    """Return the names of the nodes that publish a topic; none while there is no master."""
+    try:
+        return dict(proxy.getSystemState('/test')[2][0]).get(topic, [])
+    except OSError:
+        return []
 
 
 def new_checkout(folder):

@@ -23,17 +23,14 @@ BUILD_S = 1200.0
 def prefix(tmp_path_factory):
     """Return the install space of a new checkout, once a drive of it has run and was ended."""
     folder = tmp_path_factory.mktemp('install')
-    run = Run(folder, ['--install-space', '--sim', '1', 'gui:=none', '--master',
-                       'http://127.0.0.1:{}'.format(free_port())],
-              script=new_checkout(folder / 'robots'),
-              before=['env', *('--unset=' + name for name in WORKSPACE)])
-    try:
+    with Run(folder, ['--install-space', '--sim', '1', 'gui:=none', '--master',
+                      'http://127.0.0.1:{}'.format(free_port())],
+             script=new_checkout(folder / 'robots'),
+             before=['env', *('--unset=' + name for name in WORKSPACE)]) as run:
         wait_for(lambda: run.process.poll() is not None or 'process[bot1' in run.output, BUILD_S,
                  'the last of its nodes', poll_s=0.1)
         run.process.send_signal(signal.SIGINT)
         assert run.wait(TIMEOUT_S) == 130, run.output
-    finally:
-        run.end()
     made = folder / 'robots' / 'build' / '.ws' / 'install'
     assert '{}/share/mhri/launch/mhri.launch'.format(made) in run.output
     return made
