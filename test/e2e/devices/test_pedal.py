@@ -20,7 +20,7 @@ from support.ros_system import wait_for
 from support.node_tools import measured, moves, Process, rests
 from support.virtual_pad import PadProcess
 
-system = own_node('pedal', 'pedal.launch')
+system = own_node('pedal', '../../support/mux.launch')
 
 RUDDER = 'Saitek Pro Flight Rudder Pedals'
 SWITCH = ('PCsensor FootSwitch Keyboard', '3553:b001')
