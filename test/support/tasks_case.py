@@ -6,18 +6,20 @@ The first is seen by motion capture; the navigation of ``bot3`` is played here.
 """
 import sys
 import threading
+import time
 import unittest
 
 import actionlib
 from geometry_msgs.msg import PoseStamped, Twist
 from move_base_msgs.msg import MoveBaseAction, MoveBaseActionGoal, MoveBaseResult
 from nav_msgs.msg import Odometry
+import roslib.packages
 import rospy
 from std_srvs.srv import SetBool
 
 from support import graph
 from support.paths import MESSAGES
-from support.node_tools import NEUTRAL, Recorder, Stick, velocity
+from support.node_tools import moves, NEUTRAL, Process, Recorder, rests, Stick, velocity
 from support.ros_system import insist, NotYet, wait_for
 
 sys.path.insert(0, MESSAGES)
@@ -147,3 +149,43 @@ class TasksCase(unittest.TestCase):
     def done(self, robots, task, parameters=''):
         """Do a task to its end, which has to be a good one; return the first sentence."""
         return self.ended(robots, task, parameters, lambda state: state == TaskState.DONE)[0][1]
+
+    def moves_since(self, begun):
+        """Return whether bot1 was told to move since a time."""
+        return any(moves(item.value) for item in self.commands['bot1'].since(begun))
+
+
+def task_tool(*words):
+    """Start the terminal's mhri_task."""
+    return Process([roslib.packages.find_node('mhri', 'mhri_task')[0]] + list(words))
+
+
+class NavigationCase(TasksCase):
+    """Tasks of ``bot3``, which has a navigation."""
+
+    def sent(self):
+        """Send the robot that has move_base somewhere; return the goal, once it is on its way."""
+        def on_its_way():
+            begun = time.monotonic()
+            goal = self.start('bot3', 'goto', '{x: 50.0, y: 1.0, frame: odom}')
+            wait_for(lambda: self.navigation.goals or goal.get_comm_state() ==
+                     actionlib.CommState.DONE, what='its navigation gets no goal', timeout_s=60.0)
+            if self.navigation.goals:
+                self.commands['bot3'].wait(moves, begun, 60.0)
+                return goal
+            ended = self.ends(goal)
+            self.assertEqual(ended[0][0], TaskState.LOST, ended)
+            raise NotYet(str(ended))
+        return insist(on_its_way, 'its navigation to get a goal')
+
+    def wait_still(self):
+        """Wait until nothing but zeros has come for 0.6 s: a stopped robot may get many of them."""
+        wait_for(lambda: not [item for item in self.commands['bot3'].since(time.monotonic() - 0.6)
+                              if moves(item.value)], what='it goes on', timeout_s=60.0)
+
+    def rests_for_good(self, since):
+        """Wait until it rests after the first zero of the mux; return that."""
+        wait_for(lambda: not self.navigation.goals, what='its navigation goes on')
+        first = self.commands['bot3'].wait(rests, since)
+        self.wait_still()
+        return first

@@ -1,14 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Robots on a task: the real nodes, a simulated robot seen by motion capture, what ends a task.
-
-What is timed here is timed as the robot hears it.
-"""
-import contextlib
+"""What robots on a task do: the real nodes, a simulated robot seen by motion capture, a turtle."""
 import math
 import os
 import re
-import signal
 import sys
 import tempfile
 import time
@@ -16,9 +11,7 @@ import time
 import actionlib
 from actionlib_msgs.msg import GoalID, GoalStatusArray
 from geometry_msgs.msg import Point32, Pose2D
-import psutil
 import rosbag
-import roslib.packages
 import rospkg
 import rospy
 from rosgraph_msgs.msg import Log
@@ -28,56 +21,15 @@ from mhri.graph.ros.resources import read_text
 from mhri.map.grid import grid_of
 from mhri.map.ros.map_source import grid_message, publish_map
 from mhri.msg import Places, TaskState
-from support.fake_mux import FakeOperator
+from support.node_tools import Process, Recorder
 from support.own_node import own_node
-from support.ros_system import insist, NotYet, processes_with, wait_for
-from support.node_tools import measured, moves, Process, Recorder, rests
-from support.tasks_case import TIMEOUT_S, TasksCase
+from support.ros_system import insist, NotYet, wait_for
+from support.tasks_case import task_tool, TasksCase, TIMEOUT_S
 
 system = own_node('tasks', '../../e2e/tasks/tasks.launch')
 
 
-def task_tool(*words):
-    """Start the terminal's mhri_task."""
-    return Process([roslib.packages.find_node('mhri', 'mhri_task')[0]] + list(words))
-
-
 class Tasks(TasksCase):
-
-    def far_x(self):
-        """Return one end of a long way, as a word: that which is farther off."""
-        return '9.0' if self.place.last()[0] < 6.0 else '2.0'
-
-    def moves_since(self, begun):
-        """Return whether bot1 was told to move since a time."""
-        return any(moves(item.value) for item in self.commands['bot1'].since(begun))
-
-    def on_its_way(self):
-        """Start a robot on a long way and wait until it moves; return (goal, since when)."""
-        def moves_on():
-            begun = time.monotonic()
-            goal = self.start('bot1', 'goto', '{{x: {}, y: 2.0}}'.format(self.far_x()))
-            wait_for(lambda: goal.get_comm_state() == actionlib.CommState.DONE
-                     or self.moves_since(begun), what='it neither moves nor ends')
-            if goal.get_comm_state() != actionlib.CommState.DONE:
-                return goal, begun
-            ended = self.ends(goal)
-            self.assertEqual(ended[0][0], TaskState.LOST, ended)
-            raise NotYet(str(ended))
-        return insist(moves_on, 'it to move')
-
-    def rests_for_good(self, robot, since):
-        """Wait for silence after a zero; return how long after a time its last zeros began [s].
-
-        A robot whose laser was late has got zeros before.
-        """
-        self.commands[robot].wait(rests, since, 30.0)
-        self.commands[robot].wait_silence(0.6, 60.0)
-        noted = self.commands[robot].since(since)
-        moved = [place for place, item in enumerate(noted) if moves(item.value)]
-        last = noted[moved[-1] + 1:] if moved else noted
-        self.assertTrue(last, 'its last command is no zero')
-        return last[0].at - since
 
     def said_at_its_end(self, start):
         """Return what a program says that gives bot1 a task; it has to end well."""
@@ -100,20 +52,6 @@ class Tasks(TasksCase):
         errors = re.search(r'by odometry ([\d.]+) m .* by motion capture ([\d.]+) m', said)
         self.assertLess(float(errors.group(1)), 0.1, said)
         self.assertLess(float(errors.group(2)), 0.2, said)
-
-    def test_ctrl_c_stops_the_robot(self):
-        def on_its_way():
-            begun = time.monotonic()
-            tool = task_tool('bot1', 'goto', self.far_x(), 'y=2.0')
-            self.addCleanup(tool.end)
-            wait_for(lambda: not tool.running() or self.moves_since(begun),
-                     what=lambda: 'it to move: ' + tool.said())
-            return 'bot1: lost: ' not in tool.said() and tool
-        tool = insist(on_its_way, 'the terminal to drive it')
-        ended = tool.send(signal.SIGINT)
-        self.assertEqual(tool.wait(), 1)
-        self.assertIn('bot1: stopped', tool.said())
-        self.rests_for_good('bot1', ended)
 
     def test_words_that_cannot_be_are_refused_by_name(self):
         tools = [(task_tool('bot1', 'goto', '1.0'), 'y:'), (task_tool('bot1', 'dance'), 'dance')]
@@ -155,54 +93,8 @@ class Tasks(TasksCase):
         lines = [item for item in logged.since(begun) if item.value == '/mhri_tasks']
         self.assertLess(len(lines), 20)
 
-    def test_stop_all_ends_every_task_and_nothing_resumes(self):
-        goal, _ = self.on_its_way()
-        stopped = time.monotonic()
-        self.assertTrue(self.set_stop(True).success)
-        measured('stop-all, first zero', self.rests_for_good('bot1', stopped))
-        self.assertEqual(self.ends(goal)[0][0], TaskState.STOPPED)
-        released = time.monotonic()
-        wait_for(lambda: self.set_stop(False).success, what='not released', timeout_s=30.0)
-        self.commands['bot1'].wait_silence(0.6, 30.0)
-        self.assertFalse(self.moves_since(released))
-        wait_for(lambda: not self.lists.last().runs, what='the list has it still', timeout_s=30.0)
-
     def test_a_team_does_one_task(self):
         self.done('bot1 pond', 'hold', '{seconds: 0.5}')
-
-    def test_checking_a_robot_takes_it_over(self):
-        goal, _ = self.on_its_way()
-        checked = self.operator.check('bot1')
-        self.assertEqual(self.ends(goal)[0][0], TaskState.TAKEN_OVER)
-        self.rests_for_good('bot1', checked)
-        self.assertEqual(self.ends(self.start('bot1', 'hold', ''))[0][0], TaskState.TAKEN_OVER)
-
-    def test_an_operator_who_falls_silent_or_goes_leaves_no_robot_moving(self):
-        """The lease holds for tasks, too: nobody at the screen could stop them."""
-        for way, limit_s in (('silent', 2.0), ('gone', 1.0)):
-            goal, _ = self.on_its_way()
-            lost = self.operator.fall_silent()
-            if way == 'gone':
-                self.operator.leave()
-            took = measured('operator {} during a task, first zero'.format(way),
-                            self.rests_for_good('bot1', lost))
-            self.assertLess(took, limit_s)
-            self.assertEqual(self.ends(goal)[0][0], TaskState.LOST)
-            type(self).operator = FakeOperator() if way == 'gone' else self.operator
-            self.operator.check()
-
-    def test_killed_it_leaves_zeros_and_comes_back_with_nothing_to_do(self):
-        self.on_its_way()
-        processes = processes_with('__name:=mhri_tasks')
-        killed = time.monotonic()
-        for one in processes:
-            with contextlib.suppress(psutil.NoSuchProcess):
-                one.kill()
-        took = measured('mhri_tasks killed, first zero', self.rests_for_good('bot1', killed))
-        self.assertLess(took, 2.0)
-        wait_for(lambda: self.lists.since(killed) and not self.lists.last().runs,
-                 what='mhri_tasks does not come back', timeout_s=60.0)
-        self.rests_for_good('bot1', killed)
 
     def test_the_example_of_the_guide(self):
         path = os.path.join(rospkg.RosPack().get_path('mhri'), 'doc', 'guide', 'tasks.md')

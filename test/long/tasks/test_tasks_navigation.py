@@ -5,71 +5,21 @@ import contextlib
 import math
 import time
 
-import actionlib
 from move_base_msgs.msg import MoveBaseActionGoal
 import psutil
 import rospy
 
 from mhri.msg import TaskState
-
 from support.graph import navigation
+from support.node_tools import measured, moves, Process
 from support.own_node import own_node
-from support.ros_system import freeze, insist, NotYet, processes_with, wait_for
-from support.node_tools import measured, moves, Process, rests
-from support.tasks_case import TIMEOUT_S, TasksCase
+from support.ros_system import processes_with, wait_for
+from support.tasks_case import NavigationCase, TIMEOUT_S
 
 system = own_node('tasks_navigation', '../../e2e/tasks/tasks.launch')
 
 
-class TasksNavigation(TasksCase):
-
-    def sent(self):
-        """Send the robot that has move_base somewhere; return the goal, once it is on its way."""
-        def on_its_way():
-            begun = time.monotonic()
-            goal = self.start('bot3', 'goto', '{x: 50.0, y: 1.0, frame: odom}')
-            wait_for(lambda: self.navigation.goals or goal.get_comm_state() ==
-                     actionlib.CommState.DONE, what='its navigation gets no goal', timeout_s=60.0)
-            if self.navigation.goals:
-                self.commands['bot3'].wait(moves, begun, 60.0)
-                return goal
-            ended = self.ends(goal)
-            self.assertEqual(ended[0][0], TaskState.LOST, ended)
-            raise NotYet(str(ended))
-        return insist(on_its_way, 'its navigation to get a goal')
-
-    def wait_still(self):
-        """Wait until nothing but zeros has come for 0.6 s: a stopped robot may get many of them."""
-        wait_for(lambda: not [item for item in self.commands['bot3'].since(time.monotonic() - 0.6)
-                              if moves(item.value)], what='it goes on', timeout_s=60.0)
-
-    def rests_for_good(self, since):
-        """Wait until it rests after the first zero of the mux; return that."""
-        wait_for(lambda: not self.navigation.goals, what='its navigation goes on')
-        first = self.commands['bot3'].wait(rests, since)
-        self.wait_still()
-        return first
-
-    def test_a_goal_goes_to_the_navigation_of_the_robot(self):
-        since = time.monotonic()
-        goal = self.sent()
-        # By its own clock: it would refuse what others send, whose clock is behind this one.
-        self.assertEqual({item.value for item in self.navigation.stamps.since(since)}, {0.0})
-        target = self.navigation.goals[0].get_goal().target_pose
-        self.assertEqual((target.pose.position.x, target.pose.position.y), (50.0, 1.0))
-
-        def drives_alone():
-            lately = self.commands['bot3'].since(time.monotonic() - 0.3)
-            return len(lately) > 1 and all(moves(item.value) for item in lately)
-        wait_for(drives_alone, what='zeros are in the way of its navigation')
-        self.navigation.end('succeeded')
-        ended = self.ends(goal)
-        self.assertEqual(ended[0][0], TaskState.DONE)
-        goal = self.sent()
-        self.navigation.end('aborted')
-        ended = self.ends(goal)
-        self.assertEqual(ended[0][0], TaskState.BLOCKED)
-        self.assertIn('the test says so', ended[0][1])
+class TasksNavigation(NavigationCase):
 
     def test_whatever_ends_a_task_cancels_the_goal_there(self):
         for ends, state in (
@@ -85,23 +35,6 @@ class TasksNavigation(TasksCase):
             ends(goal)
             self.assertEqual(self.ends(goal)[0][0], state)
             self.rests_for_good(since)
-
-    def test_stop_all_and_checking_cancel_the_goal_while_mhri_tasks_hangs(self):
-        """Its navigation speaks to the robot itself: nobody else would tell it to end."""
-        for what, ends in (('stop-all', lambda: self.set_stop(True)),
-                           ('checked', lambda: self.operator.check('bot3'))):
-            self.setUp()
-            self.sent()
-            hung = processes_with('__name:=mhri_tasks')
-            try:
-                freeze(*[process.pid for process in hung])
-                since = time.monotonic()
-                ends()
-                measured('{}, mhri_tasks hangs: first zero'.format(what),
-                         self.rests_for_good(since).at - since)
-            finally:
-                for process in hung:
-                    process.resume()
 
     def test_a_goal_that_somebody_sends_under_stop_all_or_to_a_checked_robot_ends(self):
         anybody = rospy.Publisher(navigation('bot3', 'goal'), MoveBaseActionGoal, queue_size=1)
