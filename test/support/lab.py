@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A lab on one computer: a host and two robots (``machines.py``), their ssh, and an operator."""
 import fcntl
+import math
 import os
 from pathlib import Path
 import pty
@@ -20,8 +21,16 @@ from support.ros_system import System, wait_for
 
 HOST_SCRIPTS = Path(__file__).resolve().parents[2] / 'utils' / 'host'
 START_S = LONG_S = 300.0
+KINDS = {'bot1': ('--type', 'turtlebot2'), 'bot2': ('--type', 'turtlebot3', '--no-guard')}
 COMMANDS = {'bot1': 'teleop/input', 'bot2': 'cmd_vel'}
 GUARDED = ('bot1',)
+# Two or three commands were on their way, and a guard obeys what is less than a second old; the
+# zero is right behind them. Without a guard it may come with a later try of TCP, where the answer
+# to the first is lost as the link comes up; by then the watchdog ends it (0.5 s at 0.22 m/s) [m].
+STRAYED_M = {'bot1': 0.06, 'bot2': 0.12}
+# What of turtle_remote.sh's runs on a robot.
+RUNNING = ('turtle_remote', 'roslaunch', 'roscore', 'rosmaster', 'sim_robot', 'nodelet',
+           'mhri_guard', 'mhri_link', 'colour_camera')
 
 
 class Terminal:
@@ -114,6 +123,13 @@ class Lab:
             universal_newlines=True, start_new_session=True, timeout=120)
         return done.returncode, done.stdout
 
+    def deploy_to_all(self):
+        """Have the files on the robots that have none yet."""
+        for name, robot in self.robots.items():
+            if not (robot.home / 'mhri' / 'turtle_remote.sh').exists():
+                status, output = self.deploy(name)
+                assert status == 0, output
+
     def connect(self, name, *arguments):
         """Start a robot from the host, in a terminal."""
         terminal = Terminal(
@@ -192,7 +208,7 @@ class Operator:
         import rospy
         from mhri.msg import ControlMode
         from support.robots import Stick, Witness
-        self.system = lab.system
+        self.lab, self.system = lab, lab.system
         self.system.screen()
         # As the node of the pedal: it may choose the mode.
         rospy.init_node('mhri_pedal', disable_signals=True)
@@ -202,6 +218,19 @@ class Operator:
         self.stick = Stick()
         self._mode = rospy.Publisher(graph.MODE_SELECT, ControlMode, queue_size=1, latch=True)
         self._mode.publish('pedal')
+
+    def start_robots(self):
+        """Start both robots, with their files; return {name: terminal}."""
+        self.lab.deploy_to_all()
+        terminals = {name: self.lab.connect(name, *words) for name, words in KINDS.items()}
+
+        def live():
+            for terminal in terminals.values():
+                assert terminal.process.poll() is None, terminal.text()
+            return all(witness.live() for witness in self.witnesses.values())
+        wait_for(live, START_S, lambda: str([
+            terminal.text() for terminal in terminals.values()]), poll_s=0.1)
+        return terminals
 
     def drive(self, *names):
         """Drive in a circle; return when these robots do."""
@@ -213,3 +242,29 @@ class Operator:
         import rospy
         self.stick.silence()
         rospy.signal_shutdown('done')
+
+
+def first_standstill(rows, since):
+    """Return the time of the first of three rows of standstill in a row, or None."""
+    rows = [row for row in rows if row[0] >= since]
+    for index in range(len(rows) - 2):
+        if all(abs(part) < 0.01 for row in rows[index:index + 3] for part in row[1:3]):
+            return rows[index][0]
+    return None
+
+
+def path_m(rows, since):
+    """Return how far a robot went since a time [m]."""
+    rows = [row for row in rows if row[0] >= since]
+    return sum(math.hypot(b[3] - a[3], b[4] - a[4]) for a, b in zip(rows, rows[1:]))
+
+
+def left(robot):
+    """Return what of turtle_remote.sh's runs on a robot."""
+    return [line for text in RUNNING for line in robot.processes(text)]
+
+
+def await_quiet(robot):
+    """Wait until nothing of turtle_remote.sh's runs on a robot any more."""
+    wait_for(lambda: not left(robot), LONG_S, lambda: 'the robot to be quiet; left: ' + '\n'.join(
+        left(robot)), poll_s=0.2)

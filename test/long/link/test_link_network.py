@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A robot with a master of its own on another computer: deployed, linked over ssh, and by a router.
 
-As test_remote_network.py: network namespaces, sshd, stand-ins. bot2 is the router's computer.
+As test/e2e/utils/test_two_machines.py: namespaces, sshd, stand-ins. bot2 is the router's computer.
 """
 import signal
 import subprocess
@@ -11,15 +11,13 @@ import sys
 import pytest
 
 from support import machines
-from support.lab import LONG_S, running_lab, START_S
+from support.lab import await_quiet, left, LONG_S, running_lab, START_S
 from support.ros_system import wait_for
 
 WHY_NOT = machines.why_not()
 pytestmark = [pytest.mark.skipif(WHY_NOT is not None, reason=str(WHY_NOT))]
 
 ROUTER = 'tcp/10.77.0.12:7448'
-LEFT = ('turtle_remote', 'roslaunch', 'roscore', 'rosmaster', 'sim_robot', 'nodelet', 'mhri_guard',
-        'mhri_link', 'colour_camera')
 
 
 @pytest.fixture(scope='module')
@@ -56,11 +54,6 @@ def started(lab, operator, deployed):
              terminal.text, poll_s=0.1)
     assert terminal.process.poll() is None, terminal.text()
     return terminal
-
-
-def left(robot):
-    """Return what of turtle_remote.sh's runs on a robot."""
-    return [line for text in LEFT for line in robot.processes(text)]
 
 
 def drive(operator):
@@ -117,8 +110,7 @@ def test_ctrl_c_ends_both_sides(lab, started):
     import rosgraph
     started.press(b'\x03')
     assert started.process.wait(LONG_S) == 130, started.text()
-    wait_for(lambda: not left(lab.robots['bot1']), LONG_S,
-             lambda: 'the robot to be quiet: {}'.format(left(lab.robots['bot1'])), poll_s=0.2)
+    await_quiet(lab.robots['bot1'])
     nodes = {node for kind in rosgraph.Master('/lab').getSystemState() for _, users in kind
              for node in users}
     assert '/bot1/mhri_link' not in nodes
@@ -147,7 +139,7 @@ def test_router_between_two_that_do_not_reach_each_other(lab, operator, deployed
         there.wait(LONG_S)
         here.send_signal(signal.SIGTERM)
         lab.system.kill(router)
-    wait_for(lambda: not left(robot), LONG_S, 'the robot to be quiet', poll_s=0.2)
+    await_quiet(robot)
 
 
 def start_router(lab, machine):

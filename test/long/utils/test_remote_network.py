@@ -1,37 +1,28 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Host and two robots on computers of their own, for real: sshd, deployed files, driven, link cut.
+"""Host and two robots on computers of their own, for real: keys, files, pictures, outages, ends.
 
-The computers are network namespaces (``support/machines.py``); a robot's own packages are stand-ins
-that start simulated robots. The tests are the steps of one day in a lab; each also works alone.
+As test/e2e/utils/test_two_machines.py. The tests are the steps of one day in a lab; each also works
+alone.
 """
-import math
 import os
 import subprocess
 import time
 
-from support.checkout import REPO
 import numpy as np
 import pytest
 
 from support import machines
-from support.lab import GUARDED, HOST_SCRIPTS, LONG_S, Operator, running_lab, START_S
+from support.lab import (
+    await_quiet, first_standstill, GUARDED, HOST_SCRIPTS, left, LONG_S, Operator, path_m,
+    running_lab, START_S, STRAYED_M)
+from support.paths import REPO
 from support.ros_system import wait_for
 
 WHY_NOT = machines.why_not()
 pytestmark = [pytest.mark.skipif(WHY_NOT is not None, reason=str(WHY_NOT))]
 
 REMOTE = REPO / 'utils' / 'remote'
-KINDS = {'bot1': ('--type', 'turtlebot2'), 'bot2': ('--type', 'turtlebot3', '--no-guard')}
-# What a robot needs to stand still, at most: the smoother's 0.5 s of patience and its ramp, or the
-# watchdog's 0.5 s; the rest is for a machine under load.
-STOP_S = {'bot1': 1.5, 'bot2': 1.0}
-# Two or three commands were on their way, and a guard obeys what is less than a second old; the
-# zero is right behind them. Without a guard it may come with a later try of TCP, where the answer
-# to the first is lost as the link comes up; by then the watchdog ends it (0.5 s at 0.22 m/s) [m].
-STRAYED_M = {'bot1': 0.06, 'bot2': 0.12}
-# A stick of a process that stood still for longer may be centred before robots drive on.
-STALE_S = 0.4
 
 
 @pytest.fixture(scope='module')
@@ -57,23 +48,13 @@ def trusted(lab):
 @pytest.fixture(scope='module')
 def deployed(lab, trusted):
     """Have the files on the robots that have none yet."""
-    for name, robot in lab.robots.items():
-        if not (robot.home / 'mhri' / 'turtle_remote.sh').exists():
-            status, output = lab.deploy(name)
-            assert status == 0, output
+    lab.deploy_to_all()
 
 
 @pytest.fixture(scope='module')
-def started(lab, operator, deployed):
+def started(operator, deployed):
     """Start both robots; return {name: terminal}."""
-    terminals = {name: lab.connect(name, *words) for name, words in KINDS.items()}
-    end = time.monotonic() + START_S
-    while not all(witness.live() for witness in operator.witnesses.values()):
-        for terminal in terminals.values():
-            assert terminal.process.poll() is None, terminal.text()
-        assert time.monotonic() < end, [terminal.text() for terminal in terminals.values()]
-        time.sleep(0.1)
-    return terminals
+    return operator.start_robots()
 
 
 def test_robot_with_an_unknown_key_is_not_trusted(lab):
@@ -134,17 +115,6 @@ def test_a_robot_that_cannot_take_the_files_is_said(lab, trusted):
     assert status == 0, output
 
 
-def test_both_robots_are_started_found_and_driven(lab, operator, started):
-    from mhri.robots.ros.graph_scan import look_for_robots, shipped_ignore_list
-    for name, terminal in started.items():
-        assert 'ROS_IP={}'.format(lab.robots[name].ip) in terminal.text(), \
-            'not that of its other network'
-    assert 'model:=burger' in ' '.join(lab.robots['bot2'].processes('mhri_turtlebot3.launch'))
-    found = look_for_robots('/lab', shipped_ignore_list())
-    assert {'bot1', 'bot2'} <= {getattr(robot, 'name', robot) for robot in found.live}
-    operator.drive('bot1', 'bot2')
-
-
 def test_camera_is_seen_on_the_host(lab, started):
     import rosgraph
     import rospy
@@ -173,86 +143,6 @@ def magenta_sides(screen):
         return set()
     middles = [np.nonzero(found)[1].mean() for found in (magenta, green)]
     return {'left' if middles[0] < middles[1] else 'right'}
-
-
-def first_standstill(rows, since):
-    """Return the time of the first of three rows of standstill in a row, or None."""
-    rows = [row for row in rows if row[0] >= since]
-    for index in range(len(rows) - 2):
-        if all(abs(part) < 0.01 for row in rows[index:index + 3] for part in row[1:3]):
-            return rows[index][0]
-    return None
-
-
-def path_m(rows, since):
-    """Return how far a robot went since a time [m]."""
-    rows = [row for row in rows if row[0] >= since]
-    return sum(math.hypot(b[3] - a[3], b[4] - a[4]) for a, b in zip(rows, rows[1:]))
-
-
-def latencies_ms(operator, rows, turns=30):
-    """Return how long each of so many changes of the stick took to a robot's command topic [ms].
-
-    A change that is not there when the next one is due counts as of the time until then.
-    """
-    sent, operator.stick.longest_gap_s = [], 0.0
-    for turn in range(turns + 1):
-        sent.append(time.monotonic())
-        operator.stick.hold(0.2, 0.5 + 0.3 * (turn % 2))
-        time.sleep(0.04)
-    operator.stick.hold(0.2, 0.6)
-    wait_for(lambda: rows(3)[-1][0] > sent[-1] + 0.1 or operator.stick.longest_gap_s > STALE_S, 20,
-             'the last change', poll_s=0.05)
-    times = []
-    for begin, end in zip(sent, sent[1:]):
-        before = [row for row in rows(3) if row[0] < begin][-1]
-        after = [row[0] for row in rows(3) if begin <= row[0] < end and row[2] != before[2]]
-        times.append(1e3 * ((after[0] if after else end) - begin))
-    return sorted(times)
-
-
-def say_latencies(name, when, times):
-    print('MEASURED stick to {}, {}: p50 {:.1f} ms, longest {:.1f} ms, {} changes'.format(
-        name, when, times[len(times) // 2], times[-1], len(times)))
-
-
-@pytest.mark.parametrize('name, other', [('bot1', 'bot2'), ('bot2', 'bot1')])
-def test_robot_stops_without_its_link_and_is_usable_with_it(lab, operator, started, name, other):
-    robot = lab.robots[name]
-    rows, others = lab.observer(name), lab.observer(other)
-    operator.drive(name, other)
-    say_latencies(other, 'all links up', latencies_ms(operator, others))
-    cut = time.monotonic()
-    robot.unplug()
-    try:
-        wait_for(lambda: first_standstill(rows(), cut), 20, name + ' to stop', poll_s=0.05)
-        stopped = first_standstill(rows(), cut) - cut
-        during = latencies_ms(operator, others)
-        say_latencies(other, 'link of {} cut'.format(name), during)
-        # A robot that is held would wait for a centred stick for ever.
-        wait_for(lambda: operator.witnesses[other].moving()
-                 or operator.stick.longest_gap_s > STALE_S, 20, other + ' to go on', poll_s=0.02)
-        operator.stick.hold(0.0, 0.0)
-        wait_for(operator.witnesses[other].at_rest, 20, other + ' to rest', poll_s=0.05)
-    finally:
-        robot.plug()
-    mended = time.monotonic()
-    wait_for(operator.witnesses[name].live, START_S, 'word of ' + name, poll_s=0.05)
-    back = time.monotonic() - mended
-    # What was kept on the way has come by then, or never does.
-    wait_for(lambda: time.monotonic() > mended + back + 2.0, 20, 'the rest of the backlog')
-    strayed = path_m(rows(), mended)
-    operator.drive(name)
-    print('MEASURED link of {} ({}) cut for {:.1f} s: stands still after {:.0f} ms; mended: heard '
-          'of again after {:.1f} s, moved {:.3f} m by itself, then driven again'.format(
-              name, 'guarded' if name in GUARDED else 'no guard', mended - cut, stopped * 1e3,
-              back, strayed))
-    assert stopped < STOP_S[name]
-    assert strayed < STRAYED_M[name], 'a stale command moved it'
-    assert during[len(during) // 2] < 50.0, other + ' goes by the stick as before'
-    assert all(terminal.process.poll() is None for terminal in started.values())
-    operator.stick.hold(0.0, 0.0)
-    wait_for(operator.witnesses[name].at_rest, 20, name + ' to rest', poll_s=0.05)
 
 
 @pytest.mark.parametrize('outage_s', [0.4, 2.0])
@@ -313,26 +203,6 @@ def test_second_robot_of_a_name_is_refused(lab, operator, started):
     lab.terminals.remove(terminal)
     wait_for(lambda: all(witness.live() for witness in operator.witnesses.values()), LONG_S,
              'the robots to be there still')
-
-
-def left(robot):
-    """Return what of turtle_remote.sh's runs on a robot."""
-    return [line for text in ('turtle_remote', 'roslaunch', 'sim_robot', 'nodelet', 'mhri_guard',
-                              'colour_camera') for line in robot.processes(text)]
-
-
-def await_quiet(robot):
-    """Wait until nothing of turtle_remote.sh's runs on a robot any more."""
-    wait_for(lambda: not left(robot), LONG_S, lambda: 'the robot to be quiet; left: ' + '\n'.join(
-        left(robot)), poll_s=0.2)
-
-
-def test_ctrl_c_on_the_host_ends_the_robot(lab, started):
-    terminal = started['bot1']
-    assert left(lab.robots['bot1'])
-    terminal.press(b'\x03')
-    assert terminal.process.wait(LONG_S) == 130, terminal.text()
-    await_quiet(lab.robots['bot1'])
 
 
 def test_end_of_the_hosts_terminal_ends_the_robot(lab, started):
