@@ -47,7 +47,7 @@ def pytest_collectstart(collector):
     """Give a file what its folder has, before it is imported."""
     if isinstance(collector, pytest.Module):
         folder = enter(collector)
-        if folder[:1] == ('qt',) or folder == ('long', 'screen'):
+        if folder[:1] == ('qt',) or folder in (('e2e', 'screen'), ('long', 'screen')):
             collector.config.pluginmanager.import_plugin('support.qt')
         elif folder in (('long', 'house'), ('long', 'utils')):
             collector.config.pluginmanager.import_plugin('support.checkout')

@@ -40,7 +40,7 @@ class PanelSession:
         # Before there is an application: it takes the screen that is named then.
         self.system.screen(host=self.display_host)
         self.system.start_master()
-        self.system.node('mux', '__name:=mux')
+        self.system.node('mux', '__name:=mux', *self.mux_words())
         for words in launches:
             self.system.launch(*words)
         self.bring()
@@ -53,6 +53,10 @@ class PanelSession:
         self.presenter.start(robots)
         self.until(lambda: all(self._is_known(name) for name in robots), START_S, 'live robots')
         self.until(lambda: self.operator.view().mode, START_S, 'the mux')
+
+    def mux_words(self):
+        """Return what else the mux is started with."""
+        return ()
 
     def bring(self):
         """Start what else there shall be, once there is a master."""
