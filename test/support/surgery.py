@@ -152,12 +152,9 @@ class Clinic:
 
     def heal(self):
         """Undo whatever a test did; wait until only the healthy system is left."""
-        ending = self._patients + self._others
         # To end by itself takes a node half a second; its registrations are taken off below.
-        for process in ending:
-            process.kill()
-        for process in ending:
-            process.wait(START_S)
+        for process in self._patients + self._others:
+            self.system.kill(process)
         for node, topic, uri in self._registered:
             self.master.handle.unregisterPublisher(node, topic, uri)
         for name in self._parameters:
