@@ -1,6 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """An operator at the real panel who drives three simulated robots, with an eye on each."""
+import subprocess
+
 from mhri.driving.gui.hands import Errand, Grip
 from support.journals import Journal
 from support.panel_session import PanelSession
@@ -15,8 +17,6 @@ class DriveSession(PanelSession):
         super().__init__([('sim.launch', 'n:=3')], ())
         from support.robots import Witness
         self.witnesses = {name: Witness(name) for name in ROBOTS}
-        self.until(lambda: all(witness.live() for witness in self.witnesses.values()),
-                   what='the robots')
 
     def mux_words(self):
         self.journal = Journal(self.system.home)
@@ -41,10 +41,22 @@ class DriveSession(PanelSession):
         self.until(Grip(lambda: self.hands.hold_stick(forward, turn), self.hands.let_go,
                         lambda: self.operator.view().status, condition), what=what)
 
+    def click(self, name):
+        """Click a widget with the pointer of the X server: what lies above it gets it instead."""
+        widget = self.hands.widget(name)
+        place = widget.mapToGlobal(widget.rect().center())
+        clicks = subprocess.Popen(['xdotool', 'mousemove', '--sync', str(place.x()),
+                                   str(place.y()), 'click', '1'])
+        # Not by waiting: a screen that hangs meanwhile stops all robots.
+        self.until(lambda: clicks.poll() is not None, what='the click')
+        assert clicks.returncode == 0
+
     def look(self):
-        """Have the panel find all robots."""
+        """Have the panel find all robots, once they are there."""
+        self.until(lambda: all(witness.live() for witness in self.witnesses.values()),
+                   what='the robots')
         if len(self.operator.selection.robots) < len(ROBOTS):
-            self.hands.click('look_button')
+            self.click('look_button')
         self.until(lambda: [self.robot(name).link for name in self.operator.selection.robots]
                    == ['live'] * len(ROBOTS), what='three live robots')
 
@@ -52,8 +64,9 @@ class DriveSession(PanelSession):
         """Click check boxes until exactly these robots are selected."""
         for name in ROBOTS:
             if (name in names) != (name in self.operator.selection.selected):
-                self.hands.click('check_' + name)
-        assert set(self.operator.selection.selected) == set(names)
+                self.click('check_' + name)
+        self.until(lambda: set(self.operator.selection.selected) == set(names),
+                   what=lambda: '{}, not {}'.format(names, self.operator.selection.selected))
         self.until(lambda: set(self.presenter.windows) >= set(names), what='the windows')
         self.until(lambda: self.operator.view().status.endswith('ready') or not names,
                    what=lambda: 'the panel to be ready: ' + self.operator.view().status)

@@ -76,11 +76,16 @@ class Linked:
         return wait_for(lambda: child_processes('/mhri_link', self.link_of_robot.pid), LONG_S,
                         'the side of the robot')[0]
 
-    def watch_drive(self):
-        """Begin to read /mux/state, for :meth:`row`."""
+    def join(self, name):
+        """Be a node of the host, with an operator and an eye on the robot."""
         import rospy
+        from mhri.graph.ros.master_watch import MasterWatch
         from mhri.msg import DriveState
+        from support.robots import Witness
+        rospy.init_node(name, disable_signals=True)
+        MasterWatch().start()
         rospy.Subscriber(graph.DRIVE_STATE, DriveState, self._states.append, queue_size=1)
+        self.operator, self.witness = Operator(), Witness('bot1')
 
     def row(self):
         """Return what the mux said last of bot1."""
@@ -124,20 +129,14 @@ class Linked:
 
 
 def running_linked():
-    """Yield a :class:`Linked` with an operator and an eye on the robot, for a fixture."""
+    """Yield a :class:`Linked` that has joined, for a fixture."""
     import rospy
-    from mhri.graph.ros.master_watch import MasterWatch
     from mhri.link.ros.carrier import load_library
-    from support.robots import Witness
     # Without it, this says the remedy.
     load_library()
     built = Linked()
     try:
-        rospy.init_node('link_test', disable_signals=True)
-        MasterWatch().start()
-        built.watch_drive()
-        built.operator = Operator()
-        built.witness = Witness('bot1')
+        built.join('link_test')
         wait_for(built.witness.live, LONG_S, 'the odometry of bot1 on the host')
         yield built
     finally:

@@ -22,7 +22,7 @@ from mhri.robots.owners import ASK_FOR, TAKE_IT
 from mhri.robots.robot_view import robot_view
 from support.authority import Authority
 from support.cable import Cable
-from support.linked import Linked, LONG_S, Operator
+from support.linked import Linked, LONG_S
 from support.ros_system import wait_for
 
 ATTACK_S = 2.0
@@ -176,17 +176,11 @@ class Lab(Linked):
 @pytest.fixture(scope='module')
 def lab(tmp_path_factory):
     import rospy
-    from mhri.graph.ros.master_watch import MasterWatch
     from mhri.link.ros.carrier import load_library
-    from support.robots import Witness
     load_library()
     built = Lab(tmp_path_factory.mktemp('keys'))
     try:
-        rospy.init_node('keys_test', disable_signals=True)
-        MasterWatch().start()
-        built.watch_drive()
-        built.operator = Operator()
-        built.witness = Witness('bot1')
+        built.join('keys_test')
         built.listen()
         wait_for(built.is_linked, 2 * LONG_S, lambda: 'the link: {}'.format(built.said()[-3000:]))
         yield built

@@ -81,15 +81,16 @@ def test_a_restarted_master_is_said_and_driving_goes_on_without_a_restart(sessio
 
 def test_what_left_for_the_robots_is_what_the_drive_says(session):
     dice, end = random.Random(33), time.monotonic() + DRIVE_S
-    session.hands.click('brake_box')
+    session.click('brake_box')
     while time.monotonic() < end:
         session.select(*dice.sample(ROBOTS, dice.randint(1, 3)))
         session.hands.hold_stick(dice.uniform(-1.0, 1.0), dice.uniform(-1.0, 1.0))
         later = time.monotonic() + dice.uniform(0.2, 4.0)
         session.until(lambda: time.monotonic() > later)
         if dice.random() < 0.1:
-            session.hands.click('stop_button')
+            session.click('stop_button')
+            session.until(lambda: session.operator.view().stop_all, what='the stop')
         session.hands.let_go()
         session.release()
-    session.hands.click('brake_box')
+    session.click('brake_box')
     session.journal.conforms()
