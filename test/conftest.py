@@ -2,13 +2,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What every test file gets by its folder: no ROS for what is pure, a screen for what draws.
 
-A test in ``test/unit/`` runs where there is no ROS and nothing is built.
+A test in ``test/unit/`` runs where there is no ROS and nothing is built; one in ``test/ros/`` or
+``test/qt/`` starts no process. Those in ``test/flaky.yaml`` may fail.
 """
 from pathlib import Path
 import re
 import sys
 
 import pytest
+import yaml
 
 TEST = Path(__file__).parent
 ROS = re.compile(r'((ros|gen)(py|lib|graph|launch|bag|param|topic|service|node|msg)|actionlib|tf'
@@ -16,10 +18,13 @@ ROS = re.compile(r'((ros|gen)(py|lib|graph|launch|bag|param|topic|service|node|m
                  r'|\w+_(msgs|srvs))\Z')
 
 
-class Refusal:
-    """An importer that refuses ROS to pure tests even where it is installed."""
+STARTS = ('subprocess.Popen', 'os.exec', 'os.fork', 'os.forkpty', 'os.posix_spawn', 'os.system')
 
-    pure = False
+
+class Refusal:
+    """Refuses ROS to pure tests, even where it is installed, and processes to those without."""
+
+    pure = alone = False
 
     @classmethod
     def find_spec(cls, name, path=None, target=None):
@@ -31,15 +36,26 @@ class Refusal:
             raise ImportError('{} is of ROS, which tests in test/unit do without: put the '
                               'test in test/ros'.format(name), name=name)
 
+    @classmethod
+    def hear(cls, event, arguments):
+        """Refuse to start a process.
+
+        :raises AssertionError: the file is in a folder whose tests start none
+        """
+        if cls.alone and event in STARTS:
+            raise AssertionError('{} of {}: a test that starts a process belongs in test/e2e or '
+                                 'test/long'.format(event, arguments))
+
 
 sys.meta_path.insert(0, Refusal)
+sys.addaudithook(Refusal.hear)
 
 
 def enter(node):
-    """Refuse ROS from here on if a file is pure; return its folder as parts."""
+    """Refuse ROS or processes from here on, as a file's folder has it; return this as parts."""
     # Not `path`, which pytest of Ubuntu 20.04 does not have.
     folder = Path(str(node.fspath)).relative_to(TEST).parts[:-1]
-    Refusal.pure = folder[:1] == ('unit',)
+    Refusal.pure, Refusal.alone = folder[:1] == ('unit',), folder[:1] in (('ros',), ('qt',))
     return folder
 
 
@@ -47,12 +63,26 @@ def pytest_collectstart(collector):
     """Give a file what its folder has, before it is imported."""
     if isinstance(collector, pytest.Module):
         folder = enter(collector)
+        # A plugin may start a screen.
+        Refusal.alone, alone = False, Refusal.alone
         if folder[:1] == ('qt',) or folder in (('e2e', 'screen'), ('long', 'screen')):
             collector.config.pluginmanager.import_plugin('support.qt')
         elif folder in (('long', 'house'), ('long', 'utils')):
             collector.config.pluginmanager.import_plugin('support.checkout')
+        Refusal.alone = alone
 
 
 def pytest_runtest_setup(item):
     """Refuse ROS to what a pure test imports while it runs, too."""
     enter(item)
+
+
+def pytest_collection_modifyitems(items):
+    """Let those tests fail that are known to."""
+    known = {row['test']: row['mechanism'] for row in yaml.safe_load(
+        (TEST / 'flaky.yaml').read_text(encoding='utf-8'))}
+    for item in items:
+        name = Path(str(item.fspath)).relative_to(TEST.parent).as_posix() + item.nodeid[
+            item.nodeid.index('::'):]
+        if name in known:
+            item.add_marker(pytest.mark.xfail(reason='flaky: ' + known[name]))

@@ -1,12 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Run test files, each in a process of its own, two at a time; print the count last.
+"""Run the gate: lint, unit, ros, qt and e2e, of the folders of tests; print the count last.
 
-What is pure, lint and Python 3.8 run beside them at a low priority. The exit status is 0 only if
-something ran and nothing failed. What failed in a run of everything runs again when the machine has
-come to rest, alone, and has to pass three times of three; what is pure does not.
-Results (JUnit) and what each file printed are in the folder of results.
+Each file has a process of its own, two at a time; pure ones run beside them at a low priority. The
+exit status is 0 if something ran and nothing failed. A test that starts processes and fails in
+the gate runs again, alone, and has to pass three times of three; of more than three, none does.
 """
 import argparse
 import collections
@@ -28,14 +27,20 @@ TEST = Path(__file__).resolve().parent
 REPO = TEST.parent
 WORKSPACE = REPO / 'build' / '.ws'
 BENCH, OLDEST = TEST / 'bench/test_benchmarks.py', TEST / 'run_oldest.sh'
+GATE = ('lint', 'unit', 'ros', 'qt', 'e2e')
 LINT, SEARCHES = TEST / 'lint/test_lint.py', tuple(TEST.glob('unit/driving/test_every_state*.py'))
 # Files at a time, and beside them as many processes at a low priority; what one test of each may
-# take, and what a file may, where Python itself has no turn to end the test [s].
-LANES, LOW_LANES, LOW, TEST_S, LOW_TEST_S, FILE_S, BENCH_S = 2, 2, 15, 120, 600, 1800, 7200
+# take, and what all of it may: the gate, and any other run [s].
+LANES, LOW_LANES, LOW, TEST_S, LOW_TEST_S, GATE_S, RUN_S = 2, 2, 15, 120, 600, 900.0, 7200.0
+# What a process that was told to end has for that [s].
+END_S = 2.0
 # Tests that are looked at again at most, how often each has to pass, and what they may take in all
 # [s]. Each time the machine rests first: processors are less busy than that over a while [%, s],
 # or it has been waited for long enough [s].
-LOOKS, TIMES, LOOKS_S, BUSY_PERCENT, REST_S, RESTLESS_S = 10, 3, 600, 15.0, 2.0, 60.0
+LOOKS, TIMES, LOOKS_S, BUSY_PERCENT, REST_S, RESTLESS_S = 3, 3, 600, 15.0, 2.0, 60.0
+# Reasons for which a test may be skipped.
+ALLOWED = re.compile('|'.join(line for line in (TEST / 'skips.txt').read_text().splitlines()
+                              if line and not line.startswith('#')))
 # What would let a test meet the operator's system, screen or files.
 FOREIGN = ('ROS_HOSTNAME', 'ROS_NAMESPACE', 'WAYLAND_DISPLAY', 'XAUTHORITY',
            'PYTHONDONTWRITEBYTECODE')
@@ -44,6 +49,8 @@ FOREIGN = ('ROS_HOSTNAME', 'ROS_NAMESPACE', 'WAYLAND_DISPLAY', 'XAUTHORITY',
 SESSION = ['setpriv', '--pdeathsig', 'TERM', 'bash', '-c', 'echo $0 2>/dev/null >/proc/self/'
            'autogroup; nice -n $0 setpriv --pdeathsig TERM "$@"; exit']
 
+# What the names of jobs begin with in which times are compared with what is promised as it stands.
+EXACT = 'exact/'
 # One process of tests; ``path`` is its file, None where none of its tests runs again.
 Job = collections.namedtuple('Job', 'name command folder niceness path')
 # One test of a result file: ``group`` is its module and class, ``problem`` '' where it passed.
@@ -58,9 +65,12 @@ def pytest_job(name, results, paths, *options, low=False, path=None):
         *options, *map(str, paths)], results / name, LOW * low, path)
 
 
-def file_job(path, results, only=''):
-    """Return the job of a file, or of one test in it: by class and name, or as unittest has it."""
-    name = '-'.join(path.relative_to(TEST).with_suffix('').parts)
+def file_job(path, results, only='', kind=''):
+    """Return the job of a file, or of one test in it: by class and name, or as unittest has it.
+
+    :param kind: EXACT where what is promised is to be kept as it stands
+    """
+    name = kind + '-'.join(path.relative_to(TEST).with_suffix('').parts)
     if path.suffix == '.py':
         low = path in (LINT, *SEARCHES)
         return pytest_job(name, results, [str(path) + only], low=low, path=None if low else path)
@@ -76,13 +86,14 @@ def alone(job, case, results):
     """Return the job of one test; None of what is no test, or is pure."""
     if job.path is None:
         return None
+    kind = EXACT if job.name.startswith(EXACT) else ''
     if job.path.suffix == '.test':
         is_test = case.file.name.startswith('rosunit-') and case.name.startswith('test')
-        return file_job(job.path, results, case.group + '.' + case.name) if is_test else None
+        return file_job(job.path, results, case.group + '.' + case.name, kind) if is_test else None
     module, group = job.path.relative_to(REPO).with_suffix('').parts, case.group.split('.')
     if tuple(group[:len(module)]) != module:
         return None
-    return file_job(job.path, results, '::'.join(['', *group[len(module):], case.name]))
+    return file_job(job.path, results, '::'.join(['', *group[len(module):], case.name]), kind)
 
 
 def is_pure(path):
@@ -101,69 +112,84 @@ def files_in(paths):
 
 def all_jobs(arguments, results):
     """Return the jobs of what was asked for."""
-    files = files_in([BENCH] if arguments.bench else arguments.paths or [TEST])
+    files = files_in([BENCH] if arguments.bench else [TEST] if arguments.all else
+                     arguments.paths or [TEST / folder for folder in GATE])
     pure = [path for path in files if is_pure(path)]
     # Two processes, which take about as long.
     jobs = [pytest_job('pure-{}'.format(half + 1), results, pure[half::2], '-q', '-q', low=True)
             for half in range(min(2, len(pure)))]
-    if arguments.fast:
+    if arguments.only:
         return [pytest_job('lint', results, [LINT], '-k', 'flake8 or parse', low=True), *jobs]
     return jobs + [file_job(path, results) for path in files if path not in pure]
 
 
-def end_processes(mark):
-    """End what has a mark in its environment; what is ended may start more meanwhile."""
+def marked(mark):
+    """Return the processes that have a mark in their environment."""
     import psutil  # --help and --list run before it is installed
-    found = True
+    return [process for process in psutil.process_iter(['cmdline', 'environ'])
+            if (process.info['environ'] or {}).get('MHRI_TEST', '').startswith(mark)]
+
+
+def end_processes(mark):
+    """End what has a mark, and what that starts meanwhile; return the commands."""
+    import psutil
+    commands, found = [], marked(mark)
     while found:
-        found = [process for process in psutil.process_iter(['cmdline', 'environ'])
-                 if (process.info['environ'] or {}).get('MHRI_TEST', '').startswith(mark)]
         for process in found:
-            print('ending a leftover process:', process.pid, *process.info['cmdline'] or [],
-                  flush=True)
+            commands.append(' '.join([str(process.pid), *(process.info['cmdline'] or [])]))
             with contextlib.suppress(psutil.NoSuchProcess):
                 process.kill()
+        found = marked(mark)
+    return commands
 
 
-def run_job(job, env, limit_s):
-    """Run a job; return (its cases, seconds). What it leaves behind is ended."""
-    mark, began = '{}:{}:'.format(os.getpid(), job.name), time.monotonic()
+def run_job(job, env, until):
+    """Run a job; return (its cases, seconds). What it leaves behind is ended, and a failure."""
+    mark, began, problems = '{}:{}:'.format(os.getpid(), job.name), time.monotonic(), []
     job.folder.mkdir(parents=True)
     with (job.folder / 'log').open('wb') as log:
+        if began > until:
+            return cases_of(job, 0, ['the time was up before it began']), 0.0
         process = subprocess.Popen(
             [*SESSION, str(job.niceness), *job.command], cwd=str(REPO), stdin=subprocess.DEVNULL,
             stdout=log, stderr=subprocess.STDOUT, start_new_session=True, env=dict(
-                env, MHRI_TEST=mark, ROS_HOME=os.path.join(env['ROS_HOME'], job.name)))
+                env, MHRI_TEST=mark, ROS_HOME=os.path.join(env['ROS_HOME'], job.name),
+                MHRI_BOUNDS='exact' if job.name.startswith(EXACT) else ''))
         try:
-            process.wait(limit_s)
+            process.wait(until - began)
+            leaves = time.monotonic() + END_S
+            while marked(mark) and time.monotonic() < leaves:
+                time.sleep(0.05)
         except subprocess.TimeoutExpired:
-            print('{} hangs'.format(job.name))
-        finally:
-            end_processes(mark)
-    return cases_of(job, process.wait()), time.monotonic() - began
+            problems.append('the time was up')
+        left = end_processes(mark)
+    problems += [] if problems else ['left behind: ' + command for command in left]
+    return cases_of(job, process.wait(), problems), time.monotonic() - began
 
 
-def cases_of(job, status):
-    """Return the cases of a job; a bad end, and results that are torn or empty, are one, too."""
-    cases, torn = [], False
+def cases_of(job, status, problems):
+    """Return the cases of a job; problems of the job itself, such as torn results, are one, too."""
+    cases, problems = [], list(problems)
     for file in sorted(job.folder.rglob('*.xml')):
         try:
             found = list(ElementTree.parse(str(file)).getroot().iter('testcase'))
         except ElementTree.ParseError:
-            torn = True
+            problems.append('its results are torn')
             file.unlink()
             continue
         for case in found:
             bad = case.findall('failure') + case.findall('error')
-            text = ' '.join((bad[0].get('message') or bad[0].text or 'failed').split()) \
-                if bad else ''
+            skips = [] if bad else case.findall('skipped')
+            group, name = case.get('classname', ''), case.get('name', '')
             # The frame around test nodes repeats their files: it counts if one got no further.
             if bad or not file.name.startswith('rostest-'):
-                cases.append(Case(file, case.get('classname', ''), case.get('name', ''), text[:300],
-                                  not bad and case.find('skipped') is not None))
-    if torn or not cases or status and not any(case.problem for case in cases):
-        file, problem = job.folder / 'end.xml', 'ended with {} and {} results'.format(
-            status, 'torn' if torn else 'complete' if cases else 'no')
+                cases.append(Case(file, group, name, text_of(bad), bool(skips)))
+            if skips and not ALLOWED.match(text_of(skips)):
+                problems.append('skipped: {}.{}: {}'.format(group, name, text_of(skips)))
+    if not problems and (not cases or status and not any(case.problem for case in cases)):
+        problems.append('ended with {}{}'.format(status, '' if cases else ' and no results'))
+    if problems:
+        file, problem = job.folder / 'end.xml', '; '.join(problems)
         file.write_text('<testsuite name={0} tests="1" errors="1"><testcase classname="" name={0}>'
                         '<error message={1}/></testcase></testsuite>'.format(
                             quoteattr(job.name), quoteattr(problem)))
@@ -171,33 +197,44 @@ def cases_of(job, status):
     return cases
 
 
+def text_of(elements):
+    """Return what the first element of a result says, '' where there is none."""
+    return ' '.join((elements[0].get('message') or elements[0].text or 'failed').split())[:300] \
+        if elements else ''
+
+
 def count_of(cases):
     """Return a count in words."""
     failed, skipped = sum(bool(case.problem) for case in cases), sum(c.skipped for c in cases)
-    return '{} passed, {} failed'.format(len(cases) - failed - skipped, failed) + (
-        ', {} skipped'.format(skipped) if skipped else '')
+    return '{} passed, {} failed, {} skipped'.format(
+        len(cases) - failed - skipped, failed, skipped)
 
 
 def report(job, cases, took_s):
     """Print how a job went."""
     failures = [case for case in cases if case.problem]
-    log = (job.folder / 'log').read_text(errors='replace')
     print('{} {:6.1f} s  {}: {}'.format('FAIL' if failures else '  ok', took_s, job.name,
                                         count_of(cases)))
     # What it did more than once, see support.ros_system.insist.
-    for said in re.findall(r'INSISTED (\d+ times: .*)', '\n'.join([log] + [
-            file.read_text(errors='replace') for file in job.folder.rglob('rosunit-*.xml')])):
+    for said in re.findall(r'INSISTED (\d+ times: .*)', printed(job)):
         print('INSISTED {}: {}'.format(job.name, said))
-    print(log if failures else '', end='\n' * bool(failures))
+    if failures:
+        print((job.folder / 'log').read_text(errors='replace'))
     for case in failures:
         print('FAILED {}: {}.{}: {}'.format(job.name, case.group, case.name, case.problem))
     sys.stdout.flush()
 
 
-def run(jobs, env, limit_s):
+def printed(job):
+    """Return what a job printed; rostest keeps what a test node did in its results."""
+    return '\n'.join(file.read_text(errors='replace') for file in [
+        job.folder / 'log', *job.folder.rglob('rosunit-*.xml')])
+
+
+def run(jobs, env, until, lanes=LANES):
     """Run jobs in their lanes; yield each with its cases."""
-    pools = {0: futures.ThreadPoolExecutor(LANES), LOW: futures.ThreadPoolExecutor(LOW_LANES)}
-    running = {pools[job.niceness].submit(run_job, job, env, limit_s): job for job in jobs}
+    pools = {0: futures.ThreadPoolExecutor(lanes), LOW: futures.ThreadPoolExecutor(LOW_LANES)}
+    running = {pools[job.niceness].submit(run_job, job, env, until): job for job in jobs}
     try:
         for future in futures.as_completed(running):
             report(running[future], *future.result())
@@ -226,10 +263,7 @@ def passes_alone(job, case, folder, env, until):
     for times in range(TIMES):
         again = alone(job, case, folder / str(times + 1))
         remarks += [] if comes_to_rest() else ['not idle']
-        left_s = until - time.monotonic()
-        if left_s <= 0.0:
-            return times, remarks + ['no time left']
-        cases, _ = run_job(again, env, left_s)
+        cases, _ = run_job(again, env, until)
         problems = [one.problem for one in cases if one.problem]
         if problems or [(one.name, one.skipped) for one in cases] != [(case.name, False)]:
             print((again.folder / 'log').read_text(errors='replace'))
@@ -282,8 +316,9 @@ def environment(scratch, arguments):
     env.update(ROS_IP='127.0.0.1', ROS_MASTER_URI='http://127.0.0.1:9', QT_QPA_PLATFORM='xcb',
                ROS_HOME=os.path.join(scratch, 'ros'), MHRI_OWN_SCREEN='1',
                MHRI_BENCH='full' if arguments.bench else 'short',
+               MHRI_ALL='1' if arguments.all else '',
                PYTHONPYCACHEPREFIX=str(WORKSPACE / 'pycache'))
-    if arguments.fast:
+    if arguments.only:
         # Nothing of a workspace or of ROS.
         env['PYTHONPATH'] = '{}:{}'.format(REPO / 'src', WORKSPACE / 'tools')
     return env
@@ -292,16 +327,21 @@ def environment(scratch, arguments):
 def parse(words):
     """Return the arguments."""
     parser = argparse.ArgumentParser(description=__doc__.strip(), prog=Path(sys.argv[0]).name,
+                                     allow_abbrev=False,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('paths', nargs='*', type=Path, metavar='PATH',
-                        help='files or folders (default: everything)')
-    parser.add_argument('--fast', action='store_true',
-                        help='rules and lint alone: no build, no ROS and no screen')
-    parser.add_argument('--bench', action='store_true', help='the benchmarks alone, in full')
+                        help='these files or folders, once, instead')
+    what = parser.add_mutually_exclusive_group()
+    what.add_argument('--only', choices=['fast'],
+                      help='rules and lint: a minute; no build, no ROS and no screen')
+    what.add_argument('--all', action='store_true', help='the gate, and everything else')
+    what.add_argument('--bench', action='store_true', help='the benchmarks alone, in full')
     parser.add_argument('--list', action='store_true', help='print what would run, and run nothing')
     parser.add_argument('--results', type=Path, default=WORKSPACE / 'build' / 'test_results',
-                        metavar='FOLDER', help='for the results, in a folder mhri in it')
+                        metavar='FOLDER', help='for results (JUnit) and logs, in a folder mhri')
     arguments = parser.parse_args(words)
+    if arguments.paths and (arguments.only or arguments.all or arguments.bench):
+        parser.error('paths, or one of --only, --all and --bench')
     arguments.paths = [Path(os.path.abspath(str(path))) for path in arguments.paths]
     for path in arguments.paths:
         if not path.exists() or TEST not in (path, *path.parents):
@@ -324,12 +364,17 @@ def main():
     shutil.rmtree(str(results), ignore_errors=True)
     results.mkdir(parents=True)
     scratch, screen, began = tempfile.mkdtemp(prefix='mhri.'), None, time.monotonic()
-    env = environment(scratch, arguments)
+    env, limit_s = environment(scratch, arguments), (
+        RUN_S if arguments.paths or arguments.all or arguments.bench else GATE_S)
     try:
-        if not arguments.fast:
+        if not arguments.only:
             from support.xvfb import start_xvfb
             screen, env['DISPLAY'] = start_xvfb()
-        done = list(run(jobs, env, BENCH_S if arguments.bench else FILE_S))
+        done = list(run(jobs, env, began + limit_s))
+        if arguments.all:
+            # What is promised of a time is kept as it stands where the machine does nothing else.
+            done += run([file_job(job.path, results, kind=EXACT) for job, _ in done if job.path and
+                         re.search('MEASURED .*, promised', printed(job))], env, began + limit_s, 1)
         sound = look_again([(job, case) for job, cases in done for case in cases if case.problem],
                            results / 'again', env) if not arguments.paths else ()
     finally:

@@ -27,8 +27,8 @@ from support.ros_system import insist, NotYet, tell, wait_for
 TIMEOUT_S = 60.0
 # Within this what was sent has been heard, and what was on its way has come [s].
 ANSWERS_S = 0.15
-# By how much a process may be late where others share the machine.
-LATE_S = 0.25
+# How many times what is promised it may take where others share the machine.
+SHARED = 10.0
 FORWARD = (0.0, 1.0)
 NEUTRAL = (0.0, 0.0)
 
@@ -36,13 +36,16 @@ NEUTRAL = (0.0, 0.0)
 def measured(what, seconds, promised_s=None):
     """Print a time that was measured, and return it.
 
-    :param promised_s: what is promised on an idle machine, see test/bench; None for nothing
-    :raises AssertionError: it is longer by more than a busy machine may hold a process up
+    :param promised_s: what is promised on an idle machine; None for nothing. The runner gives the
+        whole machine to files that compare with a promise, and sets ``MHRI_BOUNDS=exact``
+    :raises AssertionError: it is longer; where others share the machine, ten times as long
     """
-    print('MEASURED {}: {:.3f} ms'.format(what, seconds * 1000.0))
+    print('MEASURED {}: {:.3f} ms{}'.format(what, seconds * 1000.0, '' if promised_s is None else
+                                            ', promised {:g} ms'.format(promised_s * 1000.0)))
     sys.stdout.flush()
-    assert promised_s is None or seconds < promised_s + LATE_S, '{}: {:.3f} s, promised {}'.format(
-        what, seconds, promised_s)
+    assert promised_s is None or seconds <= promised_s * (
+        1.0 if os.environ.get('MHRI_BOUNDS') == 'exact' else SHARED), (
+            '{}: {:.3f} s, promised {}'.format(what, seconds, promised_s))
     return seconds
 
 

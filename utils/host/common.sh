@@ -44,7 +44,7 @@ DEBIAN_TEST=(
 )
 # Only for the fast group of tests; most have the same names on Ubuntu.
 FAST=(
-  python3-catkin-pkg python3-evdev python3-flake8 python3-numpy python3-opencv
+  python3-catkin-pkg python3-cryptography python3-evdev python3-flake8 python3-numpy python3-opencv
   python3-pip python3-psutil python3-pyaudio python3-pytest python3-pytest-timeout python3-rospkg
   python3-yaml git util-linux
 )

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-# Installs missing packages, builds in build/.ws and runs test/run.py; --help says how.
+# Installs missing packages, builds in build/.ws and runs test/run.py: the gate, if nothing else is
+# asked for; --help says what.
 set -euo pipefail
 # shellcheck source-path=SCRIPTDIR source=common.sh
 . "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/common.sh"
@@ -24,7 +25,7 @@ install_tools() {
 
 # has_fast: true if git is there, and what the fast tests import.
 has_fast() {
-  command -v git >/dev/null && PYTHONPATH="$WS/tools" python3 -c 'import catkin_pkg, ctypes, cv2, evdev, flake8, flake8_docstrings
+  command -v git >/dev/null && PYTHONPATH="$WS/tools" python3 -c 'import catkin_pkg, cryptography, ctypes, cv2, evdev, flake8, flake8_docstrings
 import numpy, psutil, pyaudio, pytest, pytest_timeout, rospkg, yaml
 ctypes.CDLL("libturbojpeg.so.0")' 2>/dev/null
 }
@@ -47,7 +48,7 @@ main() {
   make_scratch
   trap clean_up EXIT
   trap stop INT TERM HUP
-  if [[ " $* " == *" --fast "* ]]; then
+  if [[ " $* " =~ " --only"[=\ ]"fast " ]]; then
     if ! has_fast; then
       install_missing fast
       has_fast || install_tools

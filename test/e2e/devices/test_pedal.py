@@ -128,8 +128,7 @@ class FootSwitch(PedalTest):
             self._hold_still()
         measured('press to Twist, median of 10', statistics.median(pressed))
         measured('release to zero, longest of 10', max(released))
-        self.assertLess(measured('release to zero, median of 10', statistics.median(released)),
-                        0.05)
+        measured('release to zero, median of 10', statistics.median(released), 0.05)
         begun = time.monotonic()
         self._mode('joy')
         zero = self.twists.wait(rests, begun)

@@ -26,7 +26,7 @@ system = own_node('killed_test')
 ROBOTS = ['plain1', 'plain2', 'plain3', 'plain4']
 KILLS = int(os.environ.get('MHRI_KILLS', '4'))
 # Promised; the next drive on a busy computer, promised: 1.5 s and 3 s [s].
-KILLED_S, HUNG_S, NEXT_S, SAID_S = 0.05, 0.6, 4.5, 2.0
+KILLED_S, HUNG_S, ORPHANED_S, NEXT_S, SAID_S = 0.05, 0.6, 0.2, 4.5, 2.0
 # The lease of a guard, which looks every 0.05 s [s].
 LEASED_S = 0.4
 
@@ -39,17 +39,13 @@ def world(system):
     made.end()
 
 
-def in_time(zeros, limit_s):
-    """Return whether zeros came in time, which is less where kills are counted on an idle one."""
-    from support.node_tools import LATE_S
-    return max(zeros) <= limit_s + (0.0 if 'MHRI_KILLS' in os.environ else LATE_S)
-
-
-def told(what, zeros, others=()):
-    print('\nMEASURED {}: first zero after {:.1f} ms (median), {:.1f} ms at worst of {}, {} '
-          'of them over 50; the next drive after {:.2f} s at worst'.format(
-              what, 1e3 * statistics.median(zeros), 1e3 * max(zeros), len(zeros),
+def told(what, zeros, promised_s=None, others=()):
+    from support.node_tools import measured
+    print('\nMEASURED {}: first zero after {:.1f} ms (median) of {}, {} of them over 50; the next '
+          'drive after {:.2f} s at worst'.format(
+              what, 1e3 * statistics.median(zeros), len(zeros),
               sum(zero > KILLED_S for zero in zeros), max(others, default=0.0)))
+    measured(what + ', the last first zero', max(zeros), promised_s)
 
 
 def test_every_robot_has_its_zero_within_50_ms_of_a_kill(world):
@@ -59,9 +55,9 @@ def test_every_robot_has_its_zero_within_50_ms_of_a_kill(world):
         zeros += found
         others.append(other)
         world.stays(since, since + 1.0)
-    told('drive killed (SIGKILL)', zeros, others)
+    told('drive killed (SIGKILL)', zeros, KILLED_S, others)
     assert statistics.median(zeros) <= KILLED_S
-    assert in_time(zeros, KILLED_S) and max(others) < NEXT_S
+    assert max(others) < NEXT_S
 
 
 def test_every_robot_has_its_zero_within_600_ms_of_a_hang(world):
@@ -71,8 +67,8 @@ def test_every_robot_has_its_zero_within_600_ms_of_a_hang(world):
         zeros += found
         others.append(other)
         world.stays(since, since + 1.5)
-    told('drive hung (SIGSTOP)', zeros, others)
-    assert in_time(zeros, HUNG_S) and max(others) < NEXT_S
+    told('drive hung (SIGSTOP)', zeros, HUNG_S, others)
+    assert max(others) < NEXT_S
 
 
 def test_robots_stand_and_it_is_said_while_the_undertaker_hangs(world):
@@ -82,8 +78,8 @@ def test_robots_stand_and_it_is_said_while_the_undertaker_hangs(world):
     zeros = world.zeros(since)
     world.stays(since, since + 2.5)
     world.mux.send_signal(signal.SIGCONT)
-    told('undertaker hung (SIGSTOP), said after {:.2f} s'.format(said), zeros)
-    assert said <= SAID_S and max(zeros) <= SAID_S
+    told('undertaker hung (SIGSTOP), said after {:.2f} s'.format(said), zeros, SAID_S)
+    assert said <= SAID_S
     world.drive()
 
 
@@ -92,9 +88,8 @@ def test_the_drive_stops_everything_and_ends_when_the_undertaker_is_killed(world
     since = time.monotonic()
     world.mux.kill()
     zeros = world.zeros(since)
-    told('undertaker killed', zeros)
+    told('undertaker killed', zeros, ORPHANED_S)
     world.stays(since, since + 1.0)
-    assert in_time(zeros, 0.2)
     wait_for(lambda: not os.path.exists('/proc/{}'.format(drive)), what='its end')
     world.mux.wait()
     world.start()
@@ -161,8 +156,7 @@ def test_one_that_was_ended_by_rosnode_kill_is_followed_by_another(world):
     with contextlib.suppress(OSError):
         xmlrpc.client.ServerProxy(uri).shutdown('/rosnode', 'user request')
     zeros = world.zeros(since)
-    told('rosnode kill', zeros)
-    assert in_time(zeros, KILLED_S)
+    told('rosnode kill', zeros, KILLED_S)
     world.next(run)
     world.stays(since, time.monotonic() + 0.5)
     world.drive()
@@ -197,9 +191,8 @@ def test_where_both_are_killed_roslaunch_starts_both_anew(world, echoes):
         os.kill(number, signal.SIGKILL)
     guarded, plain = world.zeros(since)
     world.next(run)
-    print('\nMEASURED both killed: first zero after {:.2f} s by the guard, {:.2f} s without; the '
-          'next drive after {:.2f} s'.format(guarded, plain, time.monotonic() - since))
-    assert in_time([guarded], LEASED_S)
+    told('both killed, without guard', [plain], others=[time.monotonic() - since])
+    told('both killed, by the guard', [guarded], LEASED_S)
     world.stays(since, time.monotonic() + 0.5)
     world.system.kill(launch, signal.SIGTERM, family=False)
     world.start()
@@ -236,8 +229,7 @@ def test_killed_twice_within_two_seconds_nothing_is_forgotten(world):
         # Selected anew it is free again.
         world.select(*ROBOTS[:3])
         world.state.wait_robot(ROBOTS[3], lambda robot: not robot.selected, 'the selection')
-    told('drive killed twice within {:.2f} s'.format(max(took)), zeros)
-    assert in_time(zeros, KILLED_S)
+    told('drive killed twice within {:.2f} s'.format(max(took)), zeros, KILLED_S)
     world.operator.set()
     world.select(*ROBOTS)
 
@@ -252,8 +244,7 @@ def test_the_master_need_not_answer(world):
         world.stays(since, since + 2.0)
     finally:
         world.system.master.send_signal(signal.SIGCONT)
-    told('master hung, drive killed', zeros)
-    assert in_time(zeros, KILLED_S)
+    told('master hung, drive killed', zeros, KILLED_S)
     world.next(run)
 
 
@@ -264,8 +255,7 @@ def test_the_master_need_not_live(world):
     os.kill(drive, signal.SIGKILL)
     zeros = world.zeros(since)
     world.stays(since, since + 4.0)
-    told('master dead, drive killed', zeros)
-    assert in_time(zeros, KILLED_S)
+    told('master dead, drive killed', zeros, KILLED_S)
     with pytest.raises(subprocess.TimeoutExpired):
         world.mux.wait(0.1)
 

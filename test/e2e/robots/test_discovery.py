@@ -17,6 +17,7 @@ from mhri.graph.ros.parallel_calls import connectable
 from mhri.graph.ros.resources import read_resource
 from mhri.robots.discovery import parse_ignore_list
 from mhri.robots.ros.graph_scan import look_for_robots
+from support.node_tools import measured
 from support.own_node import own_node
 from support.ros_system import free_port, wait_for
 
@@ -130,7 +131,7 @@ class DiscoveryTest(unittest.TestCase):
                              ['drive/velocity'] * ROBOTS)
         print('MEASURED discovery of {} robots with {} topics each: median {:.0f} ms, most {:.0f} '
               'ms'.format(ROBOTS, TOPICS, statistics.median(times) * 1e3, max(times) * 1e3))
-        self.assertLess(statistics.median(times), 1.0, 'promised: 0.5 s; see the printed figure')
+        measured('the median', statistics.median(times), 0.5)
 
     def test_the_master_is_asked_once_and_never_once_per_node(self):
         for robot in range(7):
@@ -182,4 +183,4 @@ class DiscoveryTest(unittest.TestCase):
             self.assertEqual(wait_for(answered, what='the one that does'), {self.node.uri})
             for filler in fillers:
                 filler.close()
-        self.assertLess(min(took), 2.0, 'promised: 0.3 s')
+        measured('connecting to one that does not answer', min(took), 0.35)

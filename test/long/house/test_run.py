@@ -58,7 +58,11 @@ def test_meeting():
     while len(list(here.parents[2].glob('*.came'))) < 3:
         time.sleep(0.02)
 """
-# What each ends with: passed, failed.
+SLEEPS = 'import time\n\n\ndef test_a():\n    time.sleep(600)\n'
+TIMED = 'from support.node_tools import measured\n\n\ndef test_a():\n' \
+    '    measured("it", {}, 0.05)\n'
+SKIPS = 'import pytest\n\n\n@pytest.mark.skip(reason="{}")\n'
+# What each ends with: passed, failed, skipped.
 ENDS = {
     'unit/map/test_a.py': (PASSES + '\n\n' + FAILS, 1, 1),
     'unit/map/test_b.py': ('import rospy\n', 0, 1),
@@ -67,16 +71,21 @@ ENDS = {
     'ros/map/test_empty.py': ('', 0, 1),
     'ros/map/test_crash.py': ('import os\n\n\ndef test_a():\n    os.abort()\n', 0, 1),
     'ros/map/test_stop.py': ('import os\n\n\ndef test_a():\n    os._exit(0)\n', 0, 1),
+    'ros/map/test_starts.py': ('import subprocess\n\n\ndef test_a():\n'
+                               '    subprocess.check_call(["true"])\n', 0, 1),
+    'e2e/map/test_leak.py': ('import subprocess\n\n\ndef test_a():\n    subprocess.Popen('
+                             '["sleep", "600"], start_new_session=True)\n', 1, 1),
+    'ros/map/test_skip.py': (SKIPS.format('I like') + FAILS + '\n\n' + PASSES, 1, 1, 1),
     'ros/map/test_mark.py': ('import pytest\npytestmark = pytest.mark.tiemd\n' + PASSES, 0, 1),
     'ros/map/test_hang.py': ('import pytest\nimport time\n\n\n@pytest.mark.timeout(1)\n'
                              'def test_a():\n    time.sleep(600)\n', 0, 1),
-    'long/map/test_shows.py': (
+    'e2e/map/test_shows.py': (
         'import os\nimport subprocess\n\n\ndef test_a():\n'
         '    assert os.environ["ROS_MASTER_URI"].endswith(":9")\n'
         '    subprocess.check_call(["xdpyinfo"], stdout=subprocess.DEVNULL)\n', 1, 0),
-    'long/map/pass.test': (ROSTEST.format('pass_node', 'pass'), 2, 0),
-    'long/map/fail.test': (ROSTEST.format('fail_node', 'self.fail()'), 1, 1),
-    'long/map/exit.test': (ROSTEST.format('exit_node', 'os._exit(3)'), 0, 1),
+    'e2e/map/pass.test': (ROSTEST.format('pass_node', 'pass'), 2, 0),
+    'e2e/map/fail.test': (ROSTEST.format('fail_node', 'self.fail()'), 1, 1),
+    'e2e/map/exit.test': (ROSTEST.format('exit_node', 'os._exit(3)'), 0, 1),
 }
 AGAIN = re.compile(r'AGAIN (\S+): .*: passed (\d) of 3')
 
@@ -87,14 +96,21 @@ class Package:
     def __init__(self, folder):
         self.root, self.results = folder / 'mhri', folder / 'results' / 'mhri'
         shutil.copytree(str(REPO / 'test' / 'support'), str(self.root / 'test' / 'support'))
-        for name in ('test/conftest.py', 'setup.cfg', 'package.xml'):
+        for name in ('test/conftest.py', 'test/skips.txt', 'test/flaky.yaml', 'setup.cfg',
+                     'package.xml'):
             shutil.copy(str(REPO / name), str(self.root / name))
+        shutil.copy(str(REPO / 'test' / 'run.py'), str(self.root / 'test'))
         # These tests themselves keep the machine from its rest.
-        text = (REPO / 'test' / 'run.py').read_text()
-        assert ', 60.0\n' in text
-        (self.root / 'test' / 'run.py').write_text(text.replace(', 60.0\n', ', 0.0\n'))
+        self.change(', 60.0\n', ', 0.0\n')
         self.env = dict(os.environ, ROS_PACKAGE_PATH='{}:{}'.format(
             self.root, os.environ['ROS_PACKAGE_PATH']), MARK=str(folder))
+
+    def change(self, old, new):
+        runner = self.root / 'test' / 'run.py'
+        text = runner.read_text()
+        assert text.count(old) == 1
+        runner.write_text(text.replace(old, new))
+        return self
 
     def write(self, tests):
         for name, text in tests.items():
@@ -135,30 +151,35 @@ def package(tmp_path):
 
 
 def test_each_way_to_end_counts(package):
-    status, lines = package.write(dict({name: text for name, (text, _, _) in ENDS.items()},
-                                       **{'long/map/node.py': NODE})).run_named()
+    status, lines = package.write(dict({name: text for name, (text, *_) in ENDS.items()},
+                                       **{'e2e/map/node.py': NODE})).run_named()
     counts = {name.replace('/', '-').rpartition('.')[0]: counts
               for name, (_, *counts) in ENDS.items()}
     counts.update({'pure-{}'.format(half): counts.pop('unit-map-test_' + name)
                    for half, name in ((1, 'a'), (2, 'b'))})
     said = dict(re.match(r'(?:FAIL|  ok) +[0-9.]+ s  (\S+): (.*)', line).groups()
                 for line in lines if re.match('FAIL |  ok ', line))
-    assert said == {name: '{} passed, {} failed'.format(*count) for name, count in counts.items()}
+    counts = {name: (*count, 0)[:3] for name, count in counts.items()}
+    assert said == {name: '{} passed, {} failed, {} skipped'.format(*count)
+                    for name, count in counts.items()}
+    assert children_with('MARK=' + package.env['MARK']) == []
     # So does what had to be done more than once.
     assert sorted(line for line in lines if line.startswith('INSISTED ')) == [
-        'INSISTED long-map-{}: 3 times: a node'.format(name) for name in ('fail', 'pass')]
-    passes, failures = map(sum, zip(*counts.values()))
-    assert (lines[-1], status) == ('{} passed, {} failed'.format(passes, failures), 1)
+        'INSISTED e2e-map-{}: 3 times: a node'.format(name) for name in ('fail', 'pass')]
+    passes, failures, skips = map(sum, zip(*counts.values()))
+    assert (lines[-1], status) == ('{} passed, {} failed, {} skipped'.format(
+        passes, failures, skips), 1)
     assert len([line for line in lines if line.startswith('FAILED ')]) == failures
     # catkin_test_results finds the same.
     assert sum(package.failures(path) for path in package.results.rglob('*.xml')) == failures
 
 
 @pytest.mark.parametrize('tests, said, status', [
-    ({}, '0 passed, 0 failed', 1),
-    ({'ros/map/test_a.py': 'import pytest\n\n\n@pytest.mark.skip\n' + PASSES},
+    ({}, '0 passed, 0 failed, 0 skipped', 1),
+    ({'ros/map/test_a.py': SKIPS.format('needs root') + PASSES},
      '0 passed, 0 failed, 1 skipped', 1),
-    ({'unit/map/test_a.py': PASSES}, '1 passed, 0 failed', 0)])
+    ({'unit/map/test_a.py': PASSES, 'long/map/test_a.py': FAILS},
+     '1 passed, 0 failed, 0 skipped', 0)])
 def test_only_what_ran_and_passed_is_success(package, tests, said, status):
     done, lines = package.write(tests).run()
     assert (lines[-1], done) == (said, status)
@@ -169,45 +190,52 @@ def test_what_failed_passes_three_times_of_three_alone_or_is_a_failure(package):
     status, lines = package.write({
         'ros/map/test_once.py': UNSOUND.format({1}) + '\n\n' + PASSES,
         'ros/map/test_twice.py': UNSOUND.format({1, 4}),
-        'long/map/once.test': ROSTEST.format('once_node', 'test_unsound()'),
-        'long/map/node.py': NODE,
+        'e2e/map/once.test': ROSTEST.format('once_node', 'test_unsound()'),
+        'e2e/map/node.py': NODE,
         'unit/map/test_a.py': UNSOUND.format({1}), 'lint/test_lint.py': FAILS}).run()
-    assert (lines[-1], status) == ('4 passed, 3 failed', 1)
+    assert (lines[-1], status) == ('4 passed, 3 failed, 0 skipped', 1)
     assert dict(AGAIN.match(line).groups() for line in lines if line.startswith('AGAIN ')) == {
-        'ros-map-test_once': '3', 'ros-map-test_twice': '2', 'long-map-once': '3'}
+        'ros-map-test_once': '3', 'ros-map-test_twice': '2', 'e2e-map-once': '3'}
     assert [package.failures(path, 'try 1') for path in (
-        'ros-map-test_once/pytest.xml', 'long-map-once/mhri/rosunit-once_node.xml',
+        'ros-map-test_once/pytest.xml', 'e2e-map-once/mhri/rosunit-once_node.xml',
         'ros-map-test_twice/pytest.xml')] == [0, 0, 1]
 
 
 @pytest.mark.parametrize('tests, count', [
     ({'ros/map/test_a.py': '\n\n'.join('def test_{}():\n    assert False\n'.format(number)
-                                       for number in range(11))}, 11),
+                                       for number in range(4))}, 4),
     ({'unit/map/test_a.py': FAILS, 'ros/map/test_c.py': 'import no_such_module\n'}, 2)])
 def test_what_is_pure_or_did_not_begin_or_fails_often_does_not_run_again(package, tests, count):
     status, lines = package.write(tests).run()
-    assert (lines[-1], status) == ('0 passed, {} failed'.format(count), 1)
+    assert (lines[-1], status) == ('0 passed, {} failed, 0 skipped'.format(count), 1)
     assert not [line for line in lines if line.startswith('AGAIN ')]
 
 
 def test_two_files_run_at_a_time_and_what_is_pure_beside_them(package):
     assert package.write({
         'ros/map/test_a.py': MEETS, 'ros/map/test_b.py': MEETS,
-        'unit/map/test_c.py': MEETS}).run()[1][-1] == '3 passed, 0 failed'
+        'unit/map/test_c.py': MEETS}).run()[1][-1] == '3 passed, 0 failed, 0 skipped'
 
 
-def test_a_leftover_process_is_ended(package):
-    _, lines = package.write({
-        'ros/map/test_leak.py': 'import subprocess\n\n\ndef test_leak():\n    subprocess.Popen('
-                                '["sleep", "600"], start_new_session=True)\n'}).run()
-    assert lines[-1] == '1 passed, 0 failed'
-    assert [line for line in lines if 'leftover process' in line and 'sleep 600' in line]
+def test_the_gate_ends_when_its_time_is_up(package):
+    status, lines = package.change('900.0', '4.0').write(
+        {'e2e/map/test_{}.py'.format(number): SLEEPS for number in range(3)}).run()
+    assert (lines[-1], status) == ('0 passed, 3 failed, 0 skipped', 1)
     assert children_with('MARK=' + package.env['MARK']) == []
 
 
+def test_everything_is_the_gate_and_the_rest_and_promises_of_time_as_they_stand(package):
+    status, lines = package.write({
+        'e2e/map/test_a.py': TIMED.format(0.04), 'long/map/test_b.py': TIMED.format(0.2),
+        'long/map/test_c.py': PASSES, 'long/map/test_d.py': FAILS,
+        'flaky.yaml': '[{test: "test/long/map/test_d.py::test_b", mechanism: seen}]'}).run('--all')
+    assert (lines[-1], status) == ('4 passed, 1 failed, 1 skipped', 1)
+    assert [line.split(':')[0] for line in lines if line.startswith('FAILED ')] == [
+        'FAILED exact/long-map-test_b']
+
+
 def test_an_interrupted_run_leaves_nothing(package):
-    package.write({'ros/map/test_{}.py'.format(number): 'import time\n\n\ndef test_a():\n'
-                   '    time.sleep(600)\n' for number in range(3)})
+    package.write({'ros/map/test_{}.py'.format(number): SLEEPS for number in range(3)})
     process = package.start()
     log = package.results / 'ros-map-test_0' / 'log'
     wait_for(lambda: log.exists() and 'test_0.py::' in log.read_text())
@@ -229,8 +257,9 @@ def test_fast_tests_need_neither_a_build_nor_ros_nor_a_screen(checkout):
         'lint/test_lint.py': 'def test_flake8():\n    pass\n\n\n' + FAILS,
         'unit/map/test_a.py': PASSES, 'unit/map/test_b.py': PASSES, 'ros/map/test_c.py': FAILS})
     shutil.copytree(str(small.root / 'test'), str(checkout.root / 'test'))
-    status, output = checkout.run('--fast', script=checkout.script.with_name('mhri_test.sh'))
-    assert (status, output.splitlines()[-1]) == (0, '3 passed, 0 failed')
+    status, output = checkout.run('--only', 'fast',
+                                  script=checkout.script.with_name('mhri_test.sh'))
+    assert (status, output.splitlines()[-1]) == (0, '3 passed, 0 failed, 0 skipped')
     assert checkout.calls == []
 
 
