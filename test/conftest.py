@@ -43,8 +43,8 @@ class Refusal:
         :raises AssertionError: the file is in a folder whose tests start none
         """
         if cls.alone and event in STARTS:
-            raise AssertionError('{} of {}: a test that starts a process belongs in test/e2e or '
-                                 'test/long'.format(event, arguments))
+            raise AssertionError('{} {}: a test that starts a process belongs in test/e2e or '
+                                 'test/long'.format(event, arguments[:2]))
 
 
 sys.meta_path.insert(0, Refusal)
@@ -52,10 +52,10 @@ sys.addaudithook(Refusal.hear)
 
 
 def enter(node):
-    """Refuse ROS or processes from here on, as a file's folder has it; return this as parts."""
+    """Refuse ROS from here on if a file is pure; return its folder as parts."""
     # Not `path`, which pytest of Ubuntu 20.04 does not have.
     folder = Path(str(node.fspath)).relative_to(TEST).parts[:-1]
-    Refusal.pure, Refusal.alone = folder[:1] == ('unit',), folder[:1] in (('ros',), ('qt',))
+    Refusal.pure = folder[:1] == ('unit',)
     return folder
 
 
@@ -63,18 +63,16 @@ def pytest_collectstart(collector):
     """Give a file what its folder has, before it is imported."""
     if isinstance(collector, pytest.Module):
         folder = enter(collector)
-        # A plugin may start a screen.
-        Refusal.alone, alone = False, Refusal.alone
         if folder[:1] == ('qt',) or folder in (('e2e', 'screen'), ('long', 'screen')):
             collector.config.pluginmanager.import_plugin('support.qt')
         elif folder in (('long', 'house'), ('long', 'utils')):
             collector.config.pluginmanager.import_plugin('support.checkout')
-        Refusal.alone = alone
 
 
 def pytest_runtest_setup(item):
-    """Refuse ROS to what a pure test imports while it runs, too."""
-    enter(item)
+    """Refuse ROS to what a pure test imports while it runs, too, and processes to tests alone."""
+    # Not before: libraries may start some as they are imported.
+    Refusal.alone = enter(item)[:1] in (('ros',), ('qt',))
 
 
 def pytest_collection_modifyitems(items):
