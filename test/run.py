@@ -27,7 +27,8 @@ TEST = Path(__file__).resolve().parent
 REPO = TEST.parent
 WORKSPACE = REPO / 'build' / '.ws'
 BENCH, OLDEST = TEST / 'bench/test_benchmarks.py', TEST / 'run_oldest.sh'
-GATE = ('lint', 'unit', 'ros', 'qt', 'e2e')
+# The folders of the gate, those where no test starts a process, and in these what takes minutes.
+GATE, PURE = ('lint', 'unit', 'ros', 'qt', 'e2e'), ('lint', 'unit', 'ros', 'qt')
 LINT, SEARCHES = TEST / 'lint/test_lint.py', tuple(TEST.glob('unit/driving/test_every_state*.py'))
 # Files at a time, and beside them as many processes at a low priority; what one test of each may
 # take, and what all of it may: the gate, and any other run [s].
@@ -51,7 +52,7 @@ SESSION = ['setpriv', '--pdeathsig', 'TERM', 'bash', '-c', 'echo $0 2>/dev/null 
 
 # What the names of jobs begin with in which times are compared with what is promised as it stands.
 EXACT = 'exact/'
-# One process of tests; ``path`` is its file, None where none of its tests runs again.
+# One process of tests; ``path`` is its file, None where it is of several.
 Job = collections.namedtuple('Job', 'name command folder niceness path')
 # One test of a result file: ``group`` is its module and class, ``problem`` '' where it passed.
 Case = collections.namedtuple('Case', 'file group name problem skipped')
@@ -72,10 +73,10 @@ def file_job(path, results, only='', kind=''):
     """
     name = kind + '-'.join(path.relative_to(TEST).with_suffix('').parts)
     if path.suffix == '.py':
-        low = path in (LINT, *SEARCHES)
-        return pytest_job(name, results, [str(path) + only], low=low, path=None if low else path)
+        return pytest_job(name, results, [str(path) + only], path=path,
+                          low=path.relative_to(TEST).parts[0] in PURE)
     if path == OLDEST:
-        return Job(name, [str(path), str(results / name / 'pytest.xml')], results / name, LOW, None)
+        return Job(name, [str(path), str(results / name / 'pytest.xml')], results / name, LOW, path)
     return Job(name, [
         'env', 'MHRI_TEST_ONLY=' + only, 'rostest', '--pkgdir', str(REPO), '--package', 'mhri',
         '--results-filename', name + '.xml', '--results-base-dir', str(results / name), str(path)],
@@ -84,7 +85,7 @@ def file_job(path, results, only='', kind=''):
 
 def alone(job, case, results):
     """Return the job of one test; None of what is no test, or is pure."""
-    if job.path is None:
+    if job.niceness:
         return None
     kind = EXACT if job.name.startswith(EXACT) else ''
     if job.path.suffix == '.test':
@@ -96,7 +97,7 @@ def alone(job, case, results):
     return file_job(job.path, results, '::'.join(['', *group[len(module):], case.name]), kind)
 
 
-def is_pure(path):
+def is_quick(path):
     """Return whether a file needs no ROS and little time."""
     return TEST / 'unit' in path.parents and path not in SEARCHES
 
@@ -114,13 +115,13 @@ def all_jobs(arguments, results):
     """Return the jobs of what was asked for."""
     files = files_in([BENCH] if arguments.bench else [TEST] if arguments.all else
                      arguments.paths or [TEST / folder for folder in GATE])
-    pure = [path for path in files if is_pure(path)]
+    quick = [path for path in files if is_quick(path)]
     # Two processes, which take about as long.
-    jobs = [pytest_job('pure-{}'.format(half + 1), results, pure[half::2], '-q', '-q', low=True)
-            for half in range(min(2, len(pure)))]
+    jobs = [pytest_job('unit-{}'.format(half + 1), results, quick[half::2], '-q', '-q', low=True)
+            for half in range(min(2, len(quick)))]
     if arguments.only:
         return [pytest_job('lint', results, [LINT], '-k', 'flake8 or parse', low=True), *jobs]
-    return jobs + [file_job(path, results) for path in files if path not in pure]
+    return jobs + [file_job(path, results) for path in files if path not in quick]
 
 
 def marked(mark):

@@ -47,7 +47,7 @@ class Case(unittest.TestCase):
 
 rosunit.unitrun('mhri', 'node', Case)
 """
-# Each of three waits for the other two.
+# Each of four waits for the other three.
 MEETS = """import pathlib
 import time
 
@@ -55,7 +55,7 @@ import time
 def test_meeting():
     here = pathlib.Path(__file__)
     (here.parents[2] / (here.stem + '.came')).touch()
-    while len(list(here.parents[2].glob('*.came'))) < 3:
+    while len(list(here.parents[2].glob('*.came'))) < 4:
         time.sleep(0.02)
 """
 SLEEPS = 'import time\n\n\ndef test_a():\n    time.sleep(600)\n'
@@ -155,7 +155,7 @@ def test_each_way_to_end_counts(package):
                                        **{'e2e/map/node.py': NODE})).run_named()
     counts = {name.replace('/', '-').rpartition('.')[0]: counts
               for name, (_, *counts) in ENDS.items()}
-    counts.update({'pure-{}'.format(half): counts.pop('unit-map-test_' + name)
+    counts.update({'unit-{}'.format(half): counts.pop('unit-map-test_' + name)
                    for half, name in ((1, 'a'), (2, 'b'))})
     said = dict(re.match(r'(?:FAIL|  ok) +[0-9.]+ s  (\S+): (.*)', line).groups()
                 for line in lines if re.match('FAIL |  ok ', line))
@@ -188,23 +188,24 @@ def test_only_what_ran_and_passed_is_success(package, tests, said, status):
 def test_what_failed_passes_three_times_of_three_alone_or_is_a_failure(package):
     """The others of its file do not run again; a failure elsewhere changes nothing."""
     status, lines = package.write({
-        'ros/map/test_once.py': UNSOUND.format({1}) + '\n\n' + PASSES,
-        'ros/map/test_twice.py': UNSOUND.format({1, 4}),
+        'e2e/map/test_once.py': UNSOUND.format({1}) + '\n\n' + PASSES,
+        'e2e/map/test_twice.py': UNSOUND.format({1, 4}),
         'e2e/map/once.test': ROSTEST.format('once_node', 'test_unsound()'),
         'e2e/map/node.py': NODE,
         'unit/map/test_a.py': UNSOUND.format({1}), 'lint/test_lint.py': FAILS}).run()
     assert (lines[-1], status) == ('4 passed, 3 failed, 0 skipped', 1)
     assert dict(AGAIN.match(line).groups() for line in lines if line.startswith('AGAIN ')) == {
-        'ros-map-test_once': '3', 'ros-map-test_twice': '2', 'e2e-map-once': '3'}
+        'e2e-map-test_once': '3', 'e2e-map-test_twice': '2', 'e2e-map-once': '3'}
     assert [package.failures(path, 'try 1') for path in (
-        'ros-map-test_once/pytest.xml', 'e2e-map-once/mhri/rosunit-once_node.xml',
-        'ros-map-test_twice/pytest.xml')] == [0, 0, 1]
+        'e2e-map-test_once/pytest.xml', 'e2e-map-once/mhri/rosunit-once_node.xml',
+        'e2e-map-test_twice/pytest.xml')] == [0, 0, 1]
 
 
 @pytest.mark.parametrize('tests, count', [
-    ({'ros/map/test_a.py': '\n\n'.join('def test_{}():\n    assert False\n'.format(number)
+    ({'e2e/map/test_a.py': '\n\n'.join('def test_{}():\n    assert False\n'.format(number)
                                        for number in range(4))}, 4),
-    ({'unit/map/test_a.py': FAILS, 'ros/map/test_c.py': 'import no_such_module\n'}, 2)])
+    ({'unit/map/test_a.py': FAILS, 'ros/map/test_b.py': FAILS,
+      'e2e/map/test_c.py': 'import no_such_module\n'}, 3)])
 def test_what_is_pure_or_did_not_begin_or_fails_often_does_not_run_again(package, tests, count):
     status, lines = package.write(tests).run()
     assert (lines[-1], status) == ('0 passed, {} failed, 0 skipped'.format(count), 1)
@@ -213,8 +214,8 @@ def test_what_is_pure_or_did_not_begin_or_fails_often_does_not_run_again(package
 
 def test_two_files_run_at_a_time_and_what_is_pure_beside_them(package):
     assert package.write({
-        'ros/map/test_a.py': MEETS, 'ros/map/test_b.py': MEETS,
-        'unit/map/test_c.py': MEETS}).run()[1][-1] == '3 passed, 0 failed, 0 skipped'
+        'e2e/map/test_a.py': MEETS, 'e2e/map/test_b.py': MEETS,
+        'ros/map/test_c.py': MEETS, 'unit/map/test_d.py': MEETS}).run()[1][-1] == '4 passed, 0 failed, 0 skipped'
 
 
 def test_the_gate_ends_when_its_time_is_up(package):
