@@ -213,9 +213,9 @@ def test_what_is_pure_or_did_not_begin_or_fails_often_does_not_run_again(package
 
 
 def test_two_files_run_at_a_time_and_what_is_pure_beside_them(package):
-    assert package.write({
-        'e2e/map/test_a.py': MEETS, 'e2e/map/test_b.py': MEETS,
-        'ros/map/test_c.py': MEETS, 'unit/map/test_d.py': MEETS}).run()[1][-1] == '4 passed, 0 failed, 0 skipped'
+    package.write({name: MEETS for name in (
+        'e2e/map/test_a.py', 'e2e/map/test_b.py', 'ros/map/test_c.py', 'unit/map/test_d.py')})
+    assert package.run()[1][-1] == '4 passed, 0 failed, 0 skipped'
 
 
 def test_the_gate_ends_when_its_time_is_up(package):
