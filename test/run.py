@@ -1,11 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Run the gate: lint, unit, ros, qt and e2e, of the folders of tests; print the count last.
+"""Run the gate: the folders lint, unit, ros, qt and e2e of the tests. The last line is the count.
 
-Each file has a process of its own, two at a time; pure ones run beside them at a low priority. The
-exit status is 0 if something ran and nothing failed. A test that starts processes and fails in
-the gate runs again, alone, and has to pass three times of three; of more than three, none does.
+What starts processes runs in two lanes, the rest beside it. If up to three of those fail, each
+has to pass three times of three alone. The status is 0 if something ran and nothing failed.
 """
 import argparse
 import collections
@@ -66,21 +65,22 @@ def pytest_job(name, results, paths, *options, low=False, path=None):
         *options, *map(str, paths)], results / name, LOW * low, path)
 
 
-def file_job(path, results, only='', kind=''):
-    """Return the job of a file, or of one test in it: by class and name, or as unittest has it.
+def file_job(path, results, only=(), kind=''):
+    """Return the job of a file, or of tests in it.
 
+    :param only: by class and name, '::Class::name', or one as unittest has it
     :param kind: EXACT where what is promised is to be kept as it stands
     """
     name = kind + '-'.join(path.relative_to(TEST).with_suffix('').parts)
     if path.suffix == '.py':
-        return pytest_job(name, results, [str(path) + only], path=path,
+        return pytest_job(name, results, [str(path) + test for test in only or ['']], path=path,
                           low=path.relative_to(TEST).parts[0] in PURE)
     if path == OLDEST:
         return Job(name, [str(path), str(results / name / 'pytest.xml')], results / name, LOW, path)
     return Job(name, [
-        'env', 'MHRI_TEST_ONLY=' + only, 'rostest', '--pkgdir', str(REPO), '--package', 'mhri',
-        '--results-filename', name + '.xml', '--results-base-dir', str(results / name), str(path)],
-        results / name, 0, path)
+        'env', 'MHRI_TEST_ONLY=' + ''.join(only), 'rostest', '--pkgdir', str(REPO), '--package',
+        'mhri', '--results-filename', name + '.xml', '--results-base-dir', str(results / name),
+        str(path)], results / name, 0, path)
 
 
 def alone(job, case, results):
@@ -90,11 +90,18 @@ def alone(job, case, results):
     kind = EXACT if job.name.startswith(EXACT) else ''
     if job.path.suffix == '.test':
         is_test = case.file.name.startswith('rosunit-') and case.name.startswith('test')
-        return file_job(job.path, results, case.group + '.' + case.name, kind) if is_test else None
+        return file_job(job.path, results, [case.group + '.' + case.name],
+                        kind) if is_test else None
     module, group = job.path.relative_to(REPO).with_suffix('').parts, case.group.split('.')
     if tuple(group[:len(module)]) != module:
         return None
-    return file_job(job.path, results, '::'.join(['', *group[len(module):], case.name]), kind)
+    return file_job(job.path, results, ['::'.join(['', *group[len(module):], case.name])], kind)
+
+
+def exact(job, results):
+    """Return the job of the tests of a file that compared a time with a promise, None for none."""
+    found = re.findall(r'MEASURED .*, promised \S+ ms (?:\S+\.py(::.*) \(\w+\))?', printed(job))
+    return file_job(job.path, results, sorted(set(found) - {''}), EXACT) if found else None
 
 
 def is_quick(path):
@@ -120,7 +127,8 @@ def all_jobs(arguments, results):
     jobs = [pytest_job('unit-{}'.format(half + 1), results, quick[half::2], '-q', '-q', low=True)
             for half in range(min(2, len(quick)))]
     if arguments.only:
-        return [pytest_job('lint', results, [LINT], '-k', 'flake8 or parse', low=True), *jobs]
+        return jobs + [pytest_job('lint', results, [LINT], '-k', 'not mypy and not types',
+                                  low=True)]
     return jobs + [file_job(path, results) for path in files if path not in quick]
 
 
@@ -327,11 +335,13 @@ def environment(scratch, arguments):
 
 def parse(words):
     """Return the arguments."""
-    parser = argparse.ArgumentParser(description=__doc__.strip(), prog=Path(sys.argv[0]).name,
-                                     allow_abbrev=False,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__.strip().replace('\n\n', '\n'), allow_abbrev=False, add_help=False,
+        usage='mhri_test.sh [PATH ... | --only fast | --all | --bench] [--list] [--results FOLDER]',
+        formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument('-h', '--help', action='help', help=argparse.SUPPRESS)
     parser.add_argument('paths', nargs='*', type=Path, metavar='PATH',
-                        help='these files or folders, once, instead')
+                        help='these files or folders instead, once')
     what = parser.add_mutually_exclusive_group()
     what.add_argument('--only', choices=['fast'],
                       help='rules and lint: a minute; no build, no ROS and no screen')
@@ -374,8 +384,8 @@ def main():
         done = list(run(jobs, env, began + limit_s))
         if arguments.all:
             # What is promised of a time is kept as it stands where the machine does nothing else.
-            done += run([file_job(job.path, results, kind=EXACT) for job, _ in done if job.path and
-                         re.search('MEASURED .*, promised', printed(job))], env, began + limit_s, 1)
+            done += run(list(filter(None, [exact(job, results) for job, _ in done if job.path])),
+                        env, began + limit_s, 1)
         sound = look_again([(job, case) for job, cases in done for case in cases if case.problem],
                            results / 'again', env) if not arguments.paths else ()
     finally:

@@ -37,11 +37,12 @@ def measured(what, seconds, promised_s=None):
     """Print a time that was measured, and return it.
 
     :param promised_s: what is promised on an idle machine; None for nothing. The runner gives the
-        whole machine to files that compare with a promise, and sets ``MHRI_BOUNDS=exact``
+        whole machine to tests that compare with a promise, and sets ``MHRI_BOUNDS=exact``
     :raises AssertionError: it is longer; where others share the machine, ten times as long
     """
-    print('MEASURED {}: {:.3f} ms{}'.format(what, seconds * 1000.0, '' if promised_s is None else
-                                            ', promised {:g} ms'.format(promised_s * 1000.0)))
+    print('MEASURED {}: {:.3f} ms{}'.format(
+        what, seconds * 1000.0, '' if promised_s is None else ', promised {:g} ms {}'.format(
+            promised_s * 1000.0, os.environ.get('PYTEST_CURRENT_TEST', ''))))
     sys.stdout.flush()
     assert promised_s is None or seconds <= promised_s * (
         1.0 if os.environ.get('MHRI_BOUNDS') == 'exact' else SHARED), (

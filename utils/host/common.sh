@@ -46,7 +46,7 @@ DEBIAN_TEST=(
 FAST=(
   python3-catkin-pkg python3-cryptography python3-evdev python3-flake8 python3-numpy python3-opencv
   python3-pip python3-psutil python3-pyaudio python3-pytest python3-pytest-timeout python3-rospkg
-  python3-yaml git util-linux
+  python3-yaml shellcheck git util-linux
 )
 # On Ubuntu rosdep reads the ROS packages from package.xml; these have no key there.
 UBUNTU_RUN=(
@@ -134,8 +134,8 @@ install_missing() {
   if [ "$1" = fast ]; then
     PACKAGES=("${FAST[@]}")
     case "$family" in
-      debian) PACKAGES+=(python3-flake8-docstrings libturbojpeg0) ;;
-      ubuntu) PACKAGES+=(libturbojpeg) ;;
+      debian) PACKAGES+=(python3-flake8-docstrings catkin-lint libturbojpeg0) ;;
+      ubuntu) PACKAGES+=(python3-catkin-lint libturbojpeg) ;;
     esac
     install_packages "${PACKAGES[@]}"
     return

@@ -23,10 +23,11 @@ install_tools() {
   fi
 }
 
-# has_fast: true if git is there, and what the fast tests import.
+# has_fast: true if the programs are there that the fast tests start, and what they import.
 has_fast() {
-  command -v git >/dev/null && PYTHONPATH="$WS/tools" python3 -c 'import catkin_pkg, cryptography, ctypes, cv2, evdev, flake8, flake8_docstrings
-import numpy, psutil, pyaudio, pytest, pytest_timeout, rospkg, yaml
+  command -v git >/dev/null && command -v shellcheck >/dev/null && command -v catkin_lint >/dev/null &&
+    PYTHONPATH="$WS/tools" python3 -c 'import catkin_pkg, cryptography, ctypes, cv2, evdev, flake8, flake8_docstrings
+import numpy, psutil, pyaudio, pytest, pytest_timeout, rospkg, vermin, yaml
 ctypes.CDLL("libturbojpeg.so.0")' 2>/dev/null
 }
 

@@ -59,8 +59,14 @@ def test_meeting():
         time.sleep(0.02)
 """
 SLEEPS = 'import time\n\n\ndef test_a():\n    time.sleep(600)\n'
-TIMED = 'from support.node_tools import measured\n\n\ndef test_a():\n' \
-    '    measured("it", {}, 0.05)\n'
+TIMED = PASSES + '\n\n' + '''import pytest
+from support.node_tools import measured
+
+
+@pytest.mark.parametrize('what', ['one thing'])
+def test_timed(what):
+    measured(what, {}, 0.05)
+'''
 SKIPS = 'import pytest\n\n\n@pytest.mark.skip(reason="{}")\n'
 # What each ends with: passed, failed, skipped.
 ENDS = {
@@ -230,7 +236,7 @@ def test_everything_is_the_gate_and_the_rest_and_promises_of_time_as_they_stand(
         'e2e/map/test_a.py': TIMED.format(0.04), 'long/map/test_b.py': TIMED.format(0.2),
         'long/map/test_c.py': PASSES, 'long/map/test_d.py': FAILS,
         'flaky.yaml': '[{test: "test/long/map/test_d.py::test_b", mechanism: seen}]'}).run('--all')
-    assert (lines[-1], status) == ('4 passed, 1 failed, 1 skipped', 1)
+    assert (lines[-1], status) == ('6 passed, 1 failed, 1 skipped', 1)
     assert [line.split(':')[0] for line in lines if line.startswith('FAILED ')] == [
         'FAILED exact/long-map-test_b']
 
@@ -255,9 +261,11 @@ def test_wrong_arguments_are_refused_before_anything_is_installed(checkout, argu
 
 def test_fast_tests_need_neither_a_build_nor_ros_nor_a_screen(checkout):
     small = Package(checkout.root.parent).write({
-        'lint/test_lint.py': 'def test_flake8():\n    pass\n\n\n' + FAILS,
+        'lint/test_lint.py': 'def test_flake8():\n    pass\n\n\n' + FAILS.replace('_b', '_mypy'),
         'unit/map/test_a.py': PASSES, 'unit/map/test_b.py': PASSES, 'ros/map/test_c.py': FAILS})
     shutil.copytree(str(small.root / 'test'), str(checkout.root / 'test'))
+    (checkout.root / 'build' / '.ws').mkdir(parents=True)
+    (checkout.root / 'build' / '.ws' / 'tools').symlink_to(REPO / 'build' / '.ws' / 'tools')
     status, output = checkout.run('--only', 'fast',
                                   script=checkout.script.with_name('mhri_test.sh'))
     assert (status, output.splitlines()[-1]) == (0, '3 passed, 0 failed, 0 skipped')
