@@ -14,7 +14,7 @@ from support import graph
 from support.bad_radio import BadRadio, FAR_IP, NEAR_IP, Place
 from support.plain_world import World
 from support.robots import RobotLog
-from support.ros_system import System
+from support.ros_system import System, wait_for
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 # What does not reach the robots: nothing passes, or only what they say.
@@ -36,6 +36,7 @@ class FarWorld(World):
         self._robots = robots
         #: what the flippers of the robots are held at, from -1 to 1
         self.flip = 0.0
+        self._said = None
 
     def __enter__(self):
         self.system.start_master()
@@ -57,8 +58,15 @@ class FarWorld(World):
     def _hold(self):
         """Repeat what is held, as the program of the operator does."""
         while not self._ends.wait(0.05):
+            flip = self.flip
             for name in self._robots:
-                self._hand.publish(robots=[name], key='flipper', value=[self.flip])
+                self._hand.publish(robots=[name], key='flipper', value=[flip])
+            self._said = flip
+
+    def let_go(self):
+        """Release the flippers; return once that has been said."""
+        self.flip, self._said = 0.0, None
+        wait_for(lambda: self._said == 0.0, what='the release')
 
     def _start(self, name):
         """Start a robot, and return what it is told."""

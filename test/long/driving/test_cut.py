@@ -44,7 +44,7 @@ def pauses_are_short():
 def cut_while_it_drives(world, how):
     """Cut the network of the robot that drives; return when, None if it did not drive by then."""
     robot, = world.robots
-    world.flip = 0.0
+    world.let_go()
     world.drive()
     world.flip = 1.0
     begun = time.monotonic()
