@@ -36,7 +36,9 @@ class WishTest(DriveCase):
     def pushed(self, mps):
         """Push the stick fully until the robot is sent this speed [m/s]."""
         self.keep_on(lambda: round(self.end.last()[0], 3) == mps,
-                     lambda: '{} m/s, got {}'.format(mps, self.end.last()), self.operator.limits[0])
+                     lambda: '{} m/s, got {}; {}'.format(
+                         mps, self.end.last(), self.state.robot(self.ours)),
+                     self.operator.limits[0])
 
     def kill(self):
         """Kill what works of the mux, and wait for what takes over."""
@@ -90,10 +92,12 @@ class WishTest(DriveCase):
     def test_a_limit_that_rises_counts_once_the_robot_is_selected_anew(self):
         self.operator.set(1.0, 1.0)
         self.pushed(TYPE_MPS)
+        links = list(self.end.subscriber.impl.connections)
         limits = '/{}/mhri'.format(self.ours)
         rospy.set_param(limits, {'limits': {'linear_mps': 0.1}})
         # One that falls counts as soon as it is seen.
         self.pushed(0.1)
+        self.assertEqual(self.end.subscriber.impl.connections, links, 'the connections stay')
         when = time.monotonic()
         rospy.delete_param(limits)
         for _ in range(2):

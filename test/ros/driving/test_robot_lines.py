@@ -31,6 +31,12 @@ class Line:
     def restore(self):
         self.restored += 1
 
+    def end(self):
+        self.sent.append('end')
+
+    def close(self):
+        self.sent.append('close')
+
 
 @pytest.fixture
 def drive():
@@ -74,3 +80,17 @@ def test_a_release_restores_no_power_but_what_was_cut(lines, made):
 def test_a_line_that_is_opened_again_has_a_session_of_its_own(lines):
     """A guard would drop its commands until their numbers are those of the line before."""
     assert len({lines.new_session() for _ in range(100)}) == 100
+
+
+def test_a_line_that_replaces_another_takes_over_its_connections(monkeypatch, lines, made):
+    """A node that is slow to notice the end of a connection would get no other."""
+    old, new = made[1], []
+
+    def open_line(name, *_):
+        assert old.sent == [ZERO, 'end'], 'nobody else holds the topics'
+        new.append(Line(name))
+        raise RuntimeError('the master is gone')
+    monkeypatch.setattr(module, 'RobotLine', open_line)
+    with pytest.raises(RuntimeError):
+        lines._open('bot2', None)
+    assert (len(new), old.sent, old.rule) == (1, [ZERO, 'end', 'close'], None)

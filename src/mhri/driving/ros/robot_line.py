@@ -510,17 +510,20 @@ class RobotLine:
                 self.brake_state()[0], self.also_commanded_by(self._clock()),
                 self._witness.follows, self._guarded, self._guard.stop_confirmed, self.power.state)
 
-    def close(self):
-        """Unregister everything (blocking: calls the master); send the last zero first."""
+    def end(self):
+        """Unregister all but the robot's commands (blocking); send the last zero first."""
         self.leave()
         self._probe.close()
         self.power.close()
         self.accessories.close()
         self._streams.close()
         self._eye.close()
-        self._navigation.close()
+        self._navigation.end()
         self._others.close()
-        for publisher in self._publishers + [self._heard]:
-            publisher.unregister()
         for subscriber in self._odometry + [self._echo, self._state]:
             unsubscribe(subscriber)
+
+    def close(self):
+        """Unregister the robot's commands (blocking: calls the master), after :meth:`end`."""
+        for publisher in self._publishers + [self._navigation.cancel, self._heard]:
+            publisher.unregister()

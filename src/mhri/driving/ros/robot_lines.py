@@ -138,8 +138,14 @@ class RobotLines:
 
     def _open(self, name, robot_type):
         """Open the line to a robot, replacing its old one (on the thread of known robots)."""
-        self._close(name)
-        line = RobotLine(name, robot_type, self, self._clock, self._frames)
+        old = self._end(name)
+        try:
+            line = RobotLine(name, robot_type, self, self._clock, self._frames)
+        finally:
+            # Not before the new line has the topics: that keeps the connections. A robot's node
+            # that is slow to notice the end of one ignores the announcement of the next.
+            if old is not None:
+                old.close()
         with self.lock:
             if self._closed:
                 return
@@ -156,19 +162,27 @@ class RobotLines:
 
     def _close(self, name):
         """Close the line to a robot with zeros (blocking: calls the master)."""
+        line = self._end(name)
+        if line is not None:
+            line.close()
+
+    def _end(self, name):
+        """End the line to a robot with zeros; return it to be closed, None if there was none."""
         with self.lock:
             line = self._lines.get(name)
             if line is None:
-                return
+                return None
             was_moving = name in self._moving
             self.carry_out(self.drive.close_robot(name, self._clock()))
             del self._lines[name]
             self._moving.discard(name)
+            line.rule = None
         for _ in range(int(ZEROS_S * REPEAT_HZ) if was_moving else 0):
             time.sleep(1.0 / REPEAT_HZ)
             with self.lock:
                 line.send(ZERO)
-        line.close()
+        line.end()
+        return line
 
     def leave(self):
         """Open no more lines, and announce the end of the drive to every guard."""

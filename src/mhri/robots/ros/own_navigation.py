@@ -67,8 +67,7 @@ class OwnNavigation:
             self._asked_at = now
             self.cancel.publish(GoalID(), urgent=True)
 
-    def close(self):
-        """Unregister (blocking: it asks the master); goals of mhri_tasks are cancelled."""
+    def end(self):
+        """Unregister all but ``cancel`` (blocking: it asks the master), which ends mhri's goals."""
         if self._goals is not None:
             unsubscribe(self._goals)
-        self.cancel.unregister()
