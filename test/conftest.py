@@ -16,8 +16,7 @@ TEST = Path(__file__).parent
 ROS = re.compile(r'((ros|gen)(py|lib|graph|launch|bag|param|topic|service|node|msg)|actionlib|tf'
                  r'|tf2_\w+|cv_bridge|diagnostic_updater|message_filters|mhri\.(msg|srv)'
                  r'|\w+_(msgs|srvs))\Z')
-
-
+# The audit events of a process that is started.
 STARTS = ('subprocess.Popen', 'os.exec', 'os.fork', 'os.forkpty', 'os.posix_spawn', 'os.system')
 
 

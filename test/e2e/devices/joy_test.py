@@ -67,7 +67,7 @@ class Joy(InputCase):
         begun = time.monotonic()
         self._mode('joy')
         zero = self.twists.wait(rests, begun)
-        measured('mode to zero', zero.at - begun, 0.5)
+        measured('mode to zero', zero.at - begun, 0.05)
         self.node.joys.wait_silence(0.5)
         begun = time.monotonic()
         self._mode('ps3joy')
@@ -109,7 +109,7 @@ class Joy(InputCase):
         killed = time.monotonic()
         os.kill(self.node.pid, signal.SIGKILL)
         zero = self.twists.wait(rests, killed)
-        measured('killed node to first zero', zero.at - killed, 0.7)
+        measured('killed node to first zero', zero.at - killed, 0.55)
         wait_for(lambda: not states.views(), what='still shown')
 
     def test_rumble_means_stopped_or_lost(self):

@@ -132,7 +132,7 @@ class FootSwitch(PedalTest):
         begun = time.monotonic()
         self._mode('joy')
         zero = self.twists.wait(rests, begun)
-        measured('mode to zero', zero.at - begun, 0.25)
+        measured('mode to zero', zero.at - begun, 0.05)
         self.node.joys.wait_silence(0.5)
         wait_for(lambda: not switch.grabbed(), what='is still grabbed')
 

@@ -115,7 +115,7 @@ class DriveTest(DriveCase):
         (name, receiver), = self.robots(1)
         self.drive(receiver, *FAST)
         first = self.first_zero('lease not renewed (1.0 to 1.5 s left)', receiver,
-                                self.operator.fall_silent(), 1.65)
+                                self.operator.fall_silent(), 1.6)
         self.stays_at_rest(receiver, first)
         self.operator.check(name)
         self.waits(name)
@@ -313,7 +313,7 @@ class DriveTest(DriveCase):
     def test_a_drive_that_ends_says_zeros(self):
         (_, receiver), = self.robots(1)
         self.drive(receiver, *FAST)
-        first = self.first_zero('SIGTERM', receiver, self.drive_process.send(signal.SIGTERM), 0.25)
+        first = self.first_zero('SIGTERM', receiver, self.drive_process.send(signal.SIGTERM), 0.05)
         self.zeros_then_silence(receiver, first)
         self.end_drive()
         self.start_drive()

@@ -25,8 +25,10 @@ system = own_node('killed_test')
 
 ROBOTS = ['plain1', 'plain2', 'plain3', 'plain4']
 KILLS = int(os.environ.get('MHRI_KILLS', '4'))
-# Promised; the next drive on a busy computer, promised: 1.5 s and 3 s [s].
-KILLED_S, HUNG_S, ORPHANED_S, NEXT_S, SAID_S = 0.05, 0.6, 0.2, 4.5, 2.0
+# Promised: the first zero after a kill, a hang, an orphaned drive; when a hang is said [s].
+KILLED_S, HUNG_S, ORPHANED_S, SAID_S = 0.05, 0.6, 0.2, 2.0
+# Promised: the next drive, after a kill and after a hang [s].
+NEXT_S, NEXT_AFTER_HANG_S = 1.5, 3.0
 # The lease of a guard, which looks every 0.05 s [s].
 LEASED_S = 0.4
 
@@ -39,47 +41,45 @@ def world(system):
     made.end()
 
 
-def told(what, zeros, promised_s=None, others=()):
+def told(what, zeros, promised_s=None, nexts=(), next_s=None):
     from support.node_tools import measured
-    print('\nMEASURED {}: first zero after {:.1f} ms (median) of {}, {} of them over 50; the next '
-          'drive after {:.2f} s at worst'.format(
-              what, 1e3 * statistics.median(zeros), len(zeros),
-              sum(zero > KILLED_S for zero in zeros), max(others, default=0.0)))
-    measured(what + ', the last first zero', max(zeros), promised_s)
+    print()
+    measured('{}: median of {} first zeros'.format(what, len(zeros)), statistics.median(zeros))
+    measured(what + ': latest first zero', max(zeros), promised_s)
+    if nexts:
+        measured(what + ': latest next drive', max(nexts), next_s)
 
 
 def test_every_robot_has_its_zero_within_50_ms_of_a_kill(world):
-    zeros, others = [], []
+    zeros, nexts = [], []
     for _ in range(KILLS):
-        since, found, other = world.hit(lambda drive: os.kill(drive, signal.SIGKILL))
+        since, found, next_s = world.hit(lambda drive: os.kill(drive, signal.SIGKILL))
         zeros += found
-        others.append(other)
+        nexts.append(next_s)
         world.stays(since, since + 1.0)
-    told('drive killed (SIGKILL)', zeros, KILLED_S, others)
-    assert statistics.median(zeros) <= KILLED_S
-    assert max(others) < NEXT_S
+    told('drive killed (SIGKILL)', zeros, KILLED_S, nexts, NEXT_S)
 
 
 def test_every_robot_has_its_zero_within_600_ms_of_a_hang(world):
-    zeros, others = [], []
+    zeros, nexts = [], []
     for _ in range(3):
-        since, found, other = world.hit(freeze)
+        since, found, next_s = world.hit(freeze)
         zeros += found
-        others.append(other)
+        nexts.append(next_s)
         world.stays(since, since + 1.5)
-    told('drive hung (SIGSTOP)', zeros, HUNG_S, others)
-    assert max(others) < NEXT_S
+    told('drive hung (SIGSTOP)', zeros, HUNG_S, nexts, NEXT_AFTER_HANG_S)
 
 
 def test_robots_stand_and_it_is_said_while_the_undertaker_hangs(world):
+    from support.node_tools import measured
     world.drive()
     since = freeze(world.mux.pid)
     said = world.state.said(lambda state: state.waits_for == 'undertaker', 'it', since) - since
     zeros = world.zeros(since)
     world.stays(since, since + 2.5)
     world.mux.send_signal(signal.SIGCONT)
-    told('undertaker hung (SIGSTOP), said after {:.2f} s'.format(said), zeros, SAID_S)
-    assert said <= SAID_S
+    told('undertaker hung (SIGSTOP)', zeros, SAID_S)
+    measured('undertaker hung (SIGSTOP): said', said, SAID_S)
     world.drive()
 
 
@@ -191,7 +191,7 @@ def test_where_both_are_killed_roslaunch_starts_both_anew(world, echoes):
         os.kill(number, signal.SIGKILL)
     guarded, plain = world.zeros(since)
     world.next(run)
-    told('both killed, without guard', [plain], others=[time.monotonic() - since])
+    told('both killed, without guard', [plain], nexts=[time.monotonic() - since])
     told('both killed, by the guard', [guarded], LEASED_S)
     world.stays(since, time.monotonic() + 0.5)
     world.system.kill(launch, signal.SIGTERM, family=False)
