@@ -7,6 +7,7 @@ import time
 import pytest
 
 from mhri.base.reasons import STOPPED_ALONE
+from mhri.screen.gui.robot_tile import RobotTile
 from mhri.screen.gui.tile_header import STOPPED
 from support.drive_session import DriveSession, ROBOTS
 from support.ros_system import processes_with
@@ -90,6 +91,20 @@ def test_closing_the_torn_off_window_of_a_driven_robot_stops_it(session):
     assert 'bot2' not in session.operator.selection.selected
     assert not session.presenter.windows['bot2'].torn_off
     session.hands.let_go()
+
+
+def test_a_tile_shows_the_picture_of_its_robot_and_goes_with_it(session):
+    tiles, steps = session.presenter.tiles, session.presenter.screen.remove_steps
+    session.until(lambda: all(tiles.picture_of(name)[1] is not None for name in ROBOTS),
+                  what='pictures')
+    assert [tiles.picture_of(name)[0].split('/')[1] for name in ROBOTS] == list(ROBOTS)
+
+    def shown():
+        return sorted(tile.name for tile in session.presenter.screen.findChildren(RobotTile))
+    steps.remove_requested.emit('bot2')
+    session.until(lambda: shown() == ['bot1', 'bot3'], what='the removal')
+    session.look()
+    session.until(lambda: shown() == list(ROBOTS), what='its next tile')
 
 
 def test_a_robot_switched_off_is_gone_and_not_confirmed_and_comes_back(session):

@@ -4,7 +4,7 @@
 import time
 
 from mhri.msg import TaskState
-from support.node_tools import measured, moves
+from support.node_tools import measured, moves, rests
 from support.own_node import own_node
 from support.ros_system import freeze, processes_with, wait_for
 from support.tasks_case import NavigationCase
@@ -34,6 +34,16 @@ class TasksNavigation(NavigationCase):
         ended = self.ends(goal)
         self.assertEqual(ended[0][0], TaskState.BLOCKED)
         self.assertIn('the test says so', ended[0][1])
+
+    def test_who_cancels_the_task_cancels_the_goal(self):
+        goal = self.sent()
+        since = time.monotonic()
+        goal.cancel()
+        self.assertEqual(self.ends(goal)[0][0], TaskState.STOPPED)
+        wait_for(lambda: not self.navigation.goals, what='its navigation goes on')
+        self.wait_still()
+        first = self.commands['bot3'].wait(rests, since)
+        measured('task cancelled: told to stand', first.at - since)
 
     def test_stop_all_and_checking_cancel_the_goal_while_mhri_tasks_hangs(self):
         """Its navigation speaks to the robot itself: nobody else would tell it to end."""
