@@ -1,21 +1,27 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Breaks the pure driving code and the guard in a random sample of places; the tests must notice.
+"""Breaks the program in a copy; the tests must notice.
 
-    test/mutants.py --sample 100 --seed 7 [FILE ...]    try that many mutants (of these files)
+    test/mutants.py --sample 100 --seed 7 [FILE ...]    break the pure driving code and the guard
+                                                        (or these files) in as many random places
     test/mutants.py --list [FILE ...]                   only say how many there are
+    test/mutants.py --kept [NAME ...]                   put in the faults of test/mutants
+    test/mutants.py --kept [NAME ...] --gate            the same, and run the whole gate
 
-Each is a file:line with what it was and what it is in a copy. The status is 0 if no more than
-3 in 100 of those that are not known to be equivalent survive.
+Each of a sample is a file:line with what it was and what it is in a copy. The status is 0 if no
+more than 3 in 100 of those that are not known to be equivalent survive. Each kept fault is a patch
+that says what it breaks and which files of tests see it: every one of these must be red.
 """
 import argparse
 import ast
 from concurrent.futures import ThreadPoolExecutor
+import os
 from pathlib import Path
 import queue
 import random
 import re
+import subprocess
 import sys
 import tempfile
 import time
@@ -23,6 +29,9 @@ import time
 from hazards import copy_into, REPO, run
 
 WANTED, AT_ONCE, TIMEOUT_S = 0.97, 2, 150.0
+KEPT = REPO / 'test/mutants'
+# What would let a copy meet the workspace of somebody else.
+FOREIGN = ('ROS_PACKAGE_PATH', 'CMAKE_PREFIX_PATH', 'PYTHONPATH')
 # The search in a short bound.
 SHORT = {'MHRI_EVERY_STATE': '2000'}
 GUARD = 'utils/remote/mhri_guard'
@@ -332,6 +341,60 @@ def try_out(sample):
     return killed, counted
 
 
+def kept():
+    """Return {name: (what it breaks, the paths of the tests that see it)} of the kept faults."""
+    found = {}
+    for path in sorted(KEPT.glob('*.patch')):
+        head = path.read_text(encoding='utf-8').partition('\n--- ')[0]
+        found[path.stem] = head.partition('\n')[0], re.findall(r'^Seen by: (\S+)$', head, re.M)
+    return found
+
+
+def patch(name, folder, *options):
+    """Put a kept fault into a copy of the checkout.
+
+    :raises subprocess.CalledProcessError: it does not fit the code any longer
+    """
+    subprocess.check_call(['git', 'apply', *options, str(KEPT / (name + '.patch'))], cwd=folder)
+
+
+def gate(copy, *tests):
+    """Run the gate in a copy, or some tests; return the last line, and the names of what failed."""
+    lines = subprocess.run(
+        ['utils/host/mhri_test.sh', *tests], cwd=copy, stdout=subprocess.PIPE, text=True,
+        env={key: value for key, value in os.environ.items() if key not in FOREIGN},
+        ).stdout.splitlines()
+    found = [line.partition(': ')[2].partition(': ')[0] for line in lines
+             if line.startswith('FAILED ')]
+    # What reads the code sees any change of it.
+    return lines[-1] if lines else '', [name for name in found if not name.startswith(
+        ('test.lint.', 'test.unit.house.'))]
+
+
+def try_kept(names, whole):
+    """Try kept faults; return how many of them something that should see them did not."""
+    missed, faults = 0, {name: fault for name, fault in kept().items() if name in names}
+    with tempfile.TemporaryDirectory() as folder:
+        # Lint asks git for the files.
+        copy = Path(folder) / 'mhri'
+        subprocess.check_call(['git', 'clone', '-q', str(REPO), str(copy)])
+        last, failed = gate(copy, *sorted(sum((tests for _, tests in faults.values()), [])))
+        print('as it is: ' + last, flush=True)
+        if failed or ' passed, ' not in last:
+            sys.exit('\n'.join(['these fail as it is:', *failed]))
+        for name, (what, tests) in faults.items():
+            patch(name, copy)
+            said = [(test or 'the gate', *gate(copy, *[test] if test else []))
+                    for test in ([''] if whole else tests)]
+            patch(name, copy, '-R')
+            missed += not all(failed for _, _, failed in said)
+            print('{}: {}'.format(name, what))
+            for test, last, failed in said:
+                print('\n    '.join(['  {} {}: {}'.format(
+                    'red  ' if failed else 'GREEN', test, last), *failed]), flush=True)
+    return missed
+
+
 def main():
     """Do what is asked for."""
     parser = argparse.ArgumentParser(description=__doc__,
@@ -339,8 +402,12 @@ def main():
     parser.add_argument('--sample', type=int, default=100)
     parser.add_argument('--seed', type=int, default=1)
     parser.add_argument('--list', action='store_true')
+    parser.add_argument('--kept', nargs='*', metavar='NAME', choices=[*kept()])
+    parser.add_argument('--gate', action='store_true')
     parser.add_argument('files', nargs='*', metavar='FILE')
     options = parser.parse_args()
+    if options.kept is not None:
+        sys.exit(min(try_kept(options.kept or [*kept()], options.gate), 100))
     unknown = set(options.files) - set(map(path_of, TESTS))
     if unknown:
         parser.error('not among the files of TESTS: ' + ', '.join(sorted(unknown)))

@@ -94,6 +94,14 @@ def test_mutants_are_of_files_and_tests_that_exist():
     assert rules - files == {'src/mhri/driving/journal.py'}, 'it decides nothing'
 
 
+@pytest.mark.parametrize('name', mutants.kept())
+def test_a_kept_fault_fits_the_code_and_names_who_sees_it(name):
+    what, tests = mutants.kept()[name]
+    mutants.patch(name, REPO, '--check')
+    assert what.endswith('.') and tests
+    assert all((REPO / test).is_file() for test in tests), tests
+
+
 def test_what_is_called_equivalent_is_a_mutant():
     found = {(mutant[0], *code) for name in mutants.TESTS for mutant in mutants.Finder(name).found
              for code in (mutants.told(mutant)[1:], mutants.told(mutant)[2:])}
