@@ -128,7 +128,9 @@ class SessionTest(unittest.TestCase):
         self.assertEqual(marked.id, 'm1')
         self.assertTrue(self.service['note']('', 'a red door').success)
         self.assertFalse(self.service['note']('m7', 'of nothing').success)
-        wait_for(lambda: self.flags() == ('map', ['1 a red door']), TIMEOUT_S, 'its flag')
+        wait_for(lambda: self.flags() == ('map', ['1 a red door']), TIMEOUT_S,
+                 lambda: 'its flag: {}, {}'.format(self.flags(), [
+                     event for event in self.events(folder) if event.kind == 'mark']))
         wait_for(lambda: len(bags_of(os.listdir(folder))) >= 3, TIMEOUT_S, 'a third bag')
         self.wait_for_messages()
         operator.leave()

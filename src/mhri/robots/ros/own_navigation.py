@@ -68,6 +68,6 @@ class OwnNavigation:
             self.cancel.publish(GoalID(), urgent=True)
 
     def end(self):
-        """Unregister all but ``cancel`` (blocking: it asks the master), which ends mhri's goals."""
+        """Unsubscribe (blocking: it asks the master); the goals of mhri_tasks are cancelled."""
         if self._goals is not None:
             unsubscribe(self._goals)
