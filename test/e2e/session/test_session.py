@@ -9,8 +9,10 @@ import subprocess
 import tempfile
 import time
 import unittest
+import xmlrpc.client
 
 import rosbag
+import rosgraph
 import rospy
 from std_srvs.srv import SetBool, Trigger
 
@@ -27,6 +29,7 @@ system = own_node('session', 'session.launch')
 
 TIMEOUT_S = 60.0
 ROBOTS = ('bot1', 'bot2')
+PLACES = '/mhri_tasks/places'
 LATCHED = (graph.MODE, graph.DRIVE_STATE, '/tf_static', '/map')
 MOVING = ('/tf', '/bot1/odom', '/bot2/odom')
 
@@ -66,7 +69,8 @@ class SessionTest(unittest.TestCase):
         self.state = message
 
     def start(self, **parameters):
-        """Start the node, and wait until it hears both robots."""
+        """Start the node, and wait until it hears both robots, and where they are on the map."""
+        earlier = self.ears_for_places()
         usual = {'folder': self.home, 'stop_free_mb': 1, 'warn_free_mb': 1}
         for name, value in dict(usual, **parameters).items():
             rospy.set_param('/mhri_session/' + name, value)
@@ -79,7 +83,17 @@ class SessionTest(unittest.TestCase):
         for service in self.service.values():
             service.wait_for_service(TIMEOUT_S)
         wait_for(lambda: set(self.state.robots) == set(ROBOTS), TIMEOUT_S, 'both robots')
+        # Until then, a mark is where the odometry says, which is nowhere on the map.
+        wait_for(lambda: self.ears_for_places() - earlier, TIMEOUT_S, 'a way to the places')
         return process
+
+    @staticmethod
+    def ears_for_places():
+        """Return the connections from the tasks, which know the places, to a session."""
+        rospy.wait_for_message(PLACES, Places, TIMEOUT_S)
+        tasks = xmlrpc.client.ServerProxy(rosgraph.Master('/session').lookupNode('/mhri_tasks'))
+        return {info for _, node, _, _, topic, _, info in tasks.getBusInfo('/session')[2]
+                if (node, topic) == ('/mhri_session_recorder', PLACES)}
 
     def record(self):
         """Begin to record; return the folder."""
@@ -96,7 +110,7 @@ class SessionTest(unittest.TestCase):
     @staticmethod
     def are_placed():
         """Whether both robots are known to be somewhere on the map."""
-        places = rospy.wait_for_message('/mhri_tasks/places', Places, TIMEOUT_S)
+        places = rospy.wait_for_message(PLACES, Places, TIMEOUT_S)
         return {place.robot for place in places.robots if place.by} == set(ROBOTS)
 
     @staticmethod
