@@ -114,7 +114,7 @@ class Player {
 
   #tick() {
     const now_s = this.#now(), {start, length_s, events} = this.#line, {play, place, time} = this.#bar;
-    if (this.#playing && now_s >= length_s) this.#playing = false;
+    if (this.#playing && now_s >= length_s) [this.#playing, this.#at] = [false, length_s];
     say(play, this.#playing ? 'Pause' : 'Play');
     place.value = now_s;
     say(time, `${clock(start + now_s)}   ${minutes(now_s)} of ${minutes(length_s)}`);
