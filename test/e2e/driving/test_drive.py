@@ -43,7 +43,7 @@ class DriveTest(DriveCase):
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
-        cls.task = rospy.Publisher(graph.TASK_INPUT, TeamTwist, queue_size=1, tcp_nodelay=True)
+        cls.task = rospy.Publisher(graph.TASK_INPUT, TeamTwist, queue_size=2, tcp_nodelay=True)
         wait_for(cls.task.get_num_connections, what='the drive to listen to tasks')
         cls.stop_robots = rospy.ServiceProxy('/mux/stop_robots', StopRobots)
 
@@ -54,10 +54,18 @@ class DriveTest(DriveCase):
         self.task.publish(robots=[name], twists=[twist])
 
     def on_task(self, name, receiver):
-        """Let a robot be driven by its task alone; return when that began."""
+        """Let a robot be driven by its task alone; return when that began.
+
+        A robot that has just come obeys its task once that has left it out.
+        """
         when = time.monotonic()
-        wait_for(lambda: self.send_task(name) or (0.1, 0.0) in [
-            entry[1:] for entry in receiver.after(when)], what='the task', poll_s=0.05)
+
+        def drives():
+            self.task.publish()
+            self.send_task(name)
+            return (0.1, 0.0) in [entry[1:] for entry in receiver.after(when)]
+
+        wait_for(drives, what='the task', poll_s=0.05)
         return when
 
     def test_only_selected_robots_are_driven_within_their_limits(self):

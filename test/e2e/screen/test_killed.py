@@ -4,12 +4,13 @@
 import time
 
 from support.keyboard import xdotool
-from support.ros_system import insist, NotYet, System, wait_for
+from support.ros_system import System, wait_for
 from support.windows import windows_called
 
 
 def test_the_robots_stand_still_within_600_ms():
     import rospy
+    from support.fake_mux import StateEar
     from support.robots import Witness, seconds_to_standstill
     from support.node_tools import measured
     with System() as system:
@@ -25,18 +26,14 @@ def test_the_robots_stand_still_within_600_ms():
         panel = system.node('panel', '--fresh', '--select', 'bot1 bot2')
         window, = wait_for(lambda: windows_called('^mhri'), what='the window of the panel')
 
-        def press():
-            xdotool('windowfocus', '--sync', window, 'keydown', 'a')
-            try:
-                return wait_for(lambda: all(robot.moving() and robot.latest().angular_rad_s > 1.0
-                                            for robot in robots), 5.0, 'both robots to move')
-            except NotYet:
-                xdotool('keyup', 'a')
-                raise
-
         wait_for(lambda: all(robot.live() for robot in robots), what='the robots')
-        # Let go, the key is left up until that has been read.
-        insist(press, 'the key to drive both robots', poll_s=0.5)
+        state = StateEar()
+        state.wait(lambda said: not said.waits_for and sum(
+            robot.selected and not robot.stands for robot in said.robots) == len(robots),
+            'both robots to be ready')
+        xdotool('windowfocus', '--sync', window, 'keydown', 'a')
+        wait_for(lambda: all(robot.moving() and robot.latest().angular_rad_s > 1.0
+                             for robot in robots), what='both robots to move')
         since = time.monotonic()
         system.kill(panel, family=False)
         for name, took in seconds_to_standstill(robots, since).items():
