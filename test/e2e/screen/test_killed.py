@@ -28,8 +28,8 @@ def test_the_robots_stand_still_within_600_ms():
 
         wait_for(lambda: all(robot.live() for robot in robots), what='the robots')
         state = StateEar()
-        state.wait(lambda said: not said.waits_for and sum(
-            robot.selected and not robot.stands for robot in said.robots) == len(robots),
+        state.wait(lambda said: not said.waits_for and len(said.robots) == 2 and all(
+            robot.selected and robot.topic and not robot.stands for robot in said.robots),
             'both robots to be ready')
         xdotool('windowfocus', '--sync', window, 'keydown', 'a')
         wait_for(lambda: all(robot.moving() and robot.latest().angular_rad_s > 1.0
