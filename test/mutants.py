@@ -114,8 +114,6 @@ EQUIVALENT = {
         'not held, it moves nothing',
     ('sensors/brake', 'if scan.near_m >= 0.0:'): FASTER,
     (GUARD, 'if seen.near >= 0.0:'): FASTER,
-    ('robots/stop_proof', 'self._still = 1'): NEVER,
-    ('robots/stop_proof', 'self._still = 0', 'pass'): NEVER,
     ('driving/arbiter', 'if now <= self._zeros_until:'): 'no tick is due just then',
     ('sensors/brake', 'free = scan.clears(here) | (np.hypot(here[:, 0], here[:, 1]) <= '
      'self._radius_m)'): 'it is the middle of a cell',

@@ -61,10 +61,10 @@ class OdometryWitness:
     """Judges whether a robot's odometry follows the commands.
 
     It no longer does after READINGS readings in a row show standstill although the robot should
-    have been moving for FOLLOWS_WITHIN_S: of speed and pose, or of turning if the command is only
-    to turn. It does again with the first reading that shows motion while the command is to move.
-    Wheels that slip at a wall show motion; a commanded robot whose wheels are held cannot be
-    distinguished from one whose odometry hangs.
+    have been moving: commanded to for FOLLOWS_WITHIN_S, all pushes since it last moved together.
+    Of speed and pose, or of turning if the command is only to turn. It does again with the first
+    reading that shows motion while the command is to move. Wheels that slip at a wall show motion;
+    a commanded robot whose wheels are held cannot be distinguished from one whose odometry hangs.
 
     Times are seconds of a clock that never goes back.
     """
@@ -72,29 +72,35 @@ class OdometryWitness:
     def __init__(self) -> None:
         self.follows = True
         self._pose = PoseWatch()
-        self._commanded_at: Optional[float] = None
+        # Since when it is commanded, and only to turn; and until when it was.
+        self._since: Optional[float] = None
         self._only_turns = False
+        self._until = -math.inf
+        # {only to turn: for how long in earlier pushes since it moved [s]}
+        self._told_s = {False: 0.0, True: 0.0}
         self._still = 0
 
-    @property
-    def asks(self) -> bool:
-        """Whether the robot is commanded to move: only then readings count."""
-        return self._commanded_at is not None
+    def asks(self, now: float) -> bool:
+        """Return whether readings count: it is commanded to move, or may move on from a push."""
+        return self._since is not None \
+            or now - self._until <= FOLLOWS_WITHIN_S + UNKNOWN_ROUND_TRIP_S
 
     def on_command(self, velocity: Velocity, now: float) -> None:
         """Handle the velocity of the robot's command; may be called at any rate."""
         goes = velocity.speed_mps >= MIN_TOLD_MPS
-        if not goes and abs(velocity.angular_rad_s) < MIN_TOLD_RAD_S:
-            self._commanded_at = None
-        elif self._commanded_at is None or self._only_turns == goes:
-            self._commanded_at, self._still, self._only_turns = now, 0, not goes
+        turns = not goes and abs(velocity.angular_rad_s) >= MIN_TOLD_RAD_S
+        if self._since is not None and (self._only_turns != turns or not (goes or turns)):
+            self._told_s[self._only_turns] += now - self._since
+            self._since, self._until = None, now
+        if self._since is None and (goes or turns):
+            self._since, self._only_turns = now, turns
 
     def on_motion(self, motion: Motion, now: float, round_trip_s: float) -> None:
-        """Handle a reading of the odometry while :attr:`asks`.
+        """Handle a reading of the odometry while it :meth:`asks` for one.
 
         :param round_trip_s: of the link to the robot [s]; NaN: unknown
         """
-        if self._commanded_at is None or not motion.is_possible():
+        if not self.asks(now) or not motion.is_possible():
             return
         pose_mps, pose_rad_s = self._pose.speed(motion, now)
         moves = abs(motion.angular_rad_s) > STANDSTILL_RAD_S or pose_rad_s > 0.0 \
@@ -102,8 +108,11 @@ class OdometryWitness:
         if round_trip_s != round_trip_s:
             round_trip_s = UNKNOWN_ROUND_TRIP_S
         if moves:
-            self.follows, self._still = True, 0
-        elif now - self._commanded_at > FOLLOWS_WITHIN_S + round_trip_s:
+            self._told_s[self._only_turns], self._still = 0.0, 0
+            self.follows = self.follows or self._since is not None
+        elif self._since is not None and (
+                self._told_s[self._only_turns] + now - self._since
+                > FOLLOWS_WITHIN_S + round_trip_s):
             self._still += 1
             self.follows = self.follows and self._still < READINGS
 

@@ -167,6 +167,18 @@ class TypeRulesTest(DriveCase):
         begun = self.operator.push(linear)
         wait_for(lambda: time.monotonic() - begun > seconds, poll_s=0.05)
 
+    def test_odometry_that_shows_no_motion_through_several_pushes_proves_no_stop(self):
+        name, receiver, wheels = self.silent()
+        self.heard_first(name, receiver, wheels)
+        beats = rospy.Timer(rospy.Duration(0.05), lambda _: wheels.say())
+        self.addCleanup(beats.shutdown)
+        self.assertTrue(self.state.robot(name).odometry_follows)
+        for _ in range(3):
+            self.drives(name, receiver, 0.25)
+            self.hold(0.25, 0.7)
+            self.hold(0.0, 0.7)
+        self.wait_robot(name, lambda robot: not robot.odometry_follows, 'the word for it')
+
     def test_a_robot_that_is_heard_more_seldom_is_driven_where_its_type_says_so(self):
         name, receiver, wheels = self.silent(silent_after_s=30.0)
         self.heard_first(name, receiver, wheels)

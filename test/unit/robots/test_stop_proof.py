@@ -296,6 +296,7 @@ DRIVES = {
     'frozen_but_for_a_gyro': ([(Velocity(0.3, 0.2), SPINS, 0.1, 4.0)], False),
     'frozen_while_the_stick_goes_to_and_fro': (
         [(GO, REST, 0.1, 0.9), (Velocity(-0.3), REST, 0.1, 0.9)], False),
+    'frozen_at_once_after_it_followed': ([(GO, MOVES, 0.1, 4.0), (GO, REST, 0.1, 0.3)], False),
     'follows': ([(GO, MOVES, 0.1, 4.0), (HOLD, REST, 0.1, 4.0)], True),
     'motors_that_take_their_time': ([(GO, REST, 0.1, 0.8), (GO, MOVES, 0.1, 1.0)], True),
     'told_nothing': ([(HOLD, REST, 0.1, 10.0)], True),
@@ -304,7 +305,16 @@ DRIVES = {
     'at_the_limit_of_no_turn': ([(TURN, Motion(0.0, STANDSTILL_RAD_S), 0.1, 4.0)], False),
     'told_the_least_speed_that_counts': ([(Velocity(0.05), REST, 0.1, 4.0)], False),
     'told_the_least_turn_that_counts': ([(Velocity(0.0, 0.2), REST, 0.1, 4.0)], False),
-    'taps': ([(GO, REST, 0.1, 0.4), (HOLD, REST, 0.1, 1.0)] * 5, True),
+    'a_tap': ([(GO, REST, 0.1, 0.4), (HOLD, REST, 0.1, 1.0)] * 2, True),
+    'frozen_in_taps': ([(GO, REST, 0.1, 0.4), (HOLD, REST, 0.1, 9.0)] * 5, False),
+    'frozen_in_short_taps': ([(GO, REST, 0.1, 0.2), (HOLD, REST, 0.1, 1.0)] * 9, False),
+    'frozen_in_pushes': ([(GO, REST, 0.02, 0.8), (HOLD, REST, 0.02, 1.0)] * 3, False),
+    'frozen_in_pushes_and_turns': (
+        [(GO, REST, 0.1, 0.8), (TURN, REST, 0.1, 0.4), (HOLD, REST, 0.1, 1.0)] * 3, False),
+    'moves_after_each_tap': (
+        [(GO, REST, 0.1, 0.4), (HOLD, MOVES, 0.1, 0.4), (HOLD, REST, 0.1, 1.0)] * 9, True),
+    'turns_where_it_does_not_go': (
+        [(GO, REST, 0.1, 0.8), (TURN, SPINS, 0.1, 0.4)] * 2 + [(GO, REST, 0.1, 0.8)], False),
     'slow_odometry_that_follows': ([(GO, MOVES, 1.0, 6.0)], True),
     'an_old_reading_and_then_motion': ([(GO, REST, 1.0, 2.0), (GO, MOVES, 1.0, 2.0)], True),
     'nothing_that_can_be': ([(GO, NAN, 0.1, 4.0)], True),
@@ -342,9 +352,9 @@ def test_a_pose_that_moves_follows_whatever_the_speed_beside_it_says():
 def test_a_long_way_to_the_robot_is_allowed_for(round_trip_s, times, follows):
     """One that is not known counts as 0.25 s."""
     witness = OdometryWitness()
-    assert not witness.asks
+    assert not witness.asks(0.0)
     witness.on_command(GO, 0.0)
-    assert witness.asks
+    assert witness.asks(0.0)
     for now in times:
         witness.on_motion(REST, now, round_trip_s)
     assert witness.follows == follows

@@ -183,7 +183,7 @@ class RobotLine:
     def _on_odometry(self, message):
         first, self._heard_at = self._heard_at is None, self._clock()
         self._eye.on_odometry(message, self._heard_at)
-        if self._witness.asks and self._heard_at - self._compared_at >= COMPARE_S:
+        if self._witness.asks(self._heard_at) and self._heard_at - self._compared_at >= COMPARE_S:
             self._compared_at = self._heard_at
             motion = self._eye.motion(message)
             if motion is not None:
