@@ -57,8 +57,8 @@ TESTS = {
     'robots/stop_proof': 'test/unit/robots/test_stop_proof.py',
     'robots/listeners': 'test/unit/robots/test_listeners.py',
     'robots/twins': 'test/unit/robots/test_twins.py every_state',
-    'sensors/brake': 'test/unit/sensors/test_brake.py stick_brake guard',
-    GUARD: 'guard_tables guard guard_link every_state'}
+    'sensors/brake': 'covered test/unit/sensors/test_brake.py stick_brake guard',
+    GUARD: 'covered guard_tables guard guard_link every_state'}
 FASTER, FALSY, NEVER, PASSED, JUST_THERE, BOTH_WAYS = (
     'it only saves time', 'None counts as the same there', 'nothing reads it before it is set',
     'all callers pass it', 'nothing is just at that distance', 'it goes as far both ways')
@@ -143,8 +143,7 @@ EQUIVALENT = {
     ('sensors/brake', 'near = (np.hypot(gaps[..., 0], gaps[..., 1]) <= where[:, 2] + '
      '_BESIDE_M).any(axis=1)'): JUST_THERE,
     (GUARD, 'if beam is None or blind_at(seen, x, y) > far or far >= seen.most:'): JUST_THERE,
-    (GUARD, 'if blind <= far < seen.most or blind < INFINITE and seen.near and cell in ground:'):
-        JUST_THERE,
+    (GUARD, 'return far < seen.most and (blind_at(seen, x, y) <= far'): JUST_THERE,
     (GUARD, 'and far <= seen.most):'): JUST_THERE,
     (GUARD, 'blind_at(seen, ahead, left) < far and max(least, 0.0) + EDGE_M < far'): JUST_THERE,
     (GUARD, 'return hit is None or far <= hit'): JUST_THERE,

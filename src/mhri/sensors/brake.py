@@ -9,7 +9,7 @@ contact.
 from dataclasses import dataclass, replace
 import math
 import operator
-from typing import Callable, Dict, Iterable, Optional, Tuple
+from typing import Callable, Dict, Iterable, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -41,13 +41,17 @@ _COLUMNS = 1 << 30
 # A remembered obstacle this close to a known robot is that robot [m].
 _BESIDE_M = 0.15
 _NOTHING = np.zeros((0, 2))
-# Spacing of the places that have to be in view [m].
+# Spacing of the places that have to be in view [m], and those on the front half of the rim, a tenth
+# of a radian apart [rad].
 _STEP_M = 0.03
+_RIM = np.linspace(-0.5 * math.pi, 0.5 * math.pi, 33)
+# Of a laser that looks the way the robot goes, everything this close to that way is asked for, also
+# where its field ends; for any other way its field counts without this much at each end, where the
+# beams of depth cameras are often invalid [rad].
+_CONE_RAD, _ENDS_RAD = 0.35, 0.15
 # Tried in turn if the way of a robot leads out of view [share of its speed].
 _SLOWER = (1.0, 0.75, 0.5, 0.25, 0.1)
 _HERE = Pose(0.0, 0.0, 0.0)
-# For each point (n, 2) in the robot's frame [m]: whether it is in view of a scan. None: all are.
-Looks = Optional[Callable[[np.ndarray], np.ndarray]]
 
 
 @dataclass(frozen=True)
@@ -103,6 +107,20 @@ class Scan:
     def faces_past(self, points: np.ndarray) -> np.ndarray:
         """Return for each point whether a beam has its direction, even if it is too near."""
         return np.isfinite(self._blind(into(self.mount, points), _GAP_RAD))
+
+    def aims_at(self, points: np.ndarray, course_rad: float) -> np.ndarray:
+        """Return for each point whether the laser should measure it, valid beam or not.
+
+        :param course_rad: direction of travel in the robot's frame
+        """
+        points, course_rad = into(self.mount, points), course_rad - self.mount.heading_rad
+        if self._whole or not len(self.ranges) or not self.step:
+            return np.full(len(points), self._whole)
+        aimed = self._beam(points, -_ENDS_RAD)[0]
+        if self._beam(np.array([(math.cos(course_rad), math.sin(course_rad))]))[0][0]:
+            aside = np.arctan2(points[:, 1], points[:, 0]) - course_rad + math.pi
+            aimed |= np.abs(np.mod(aside, 2.0 * math.pi) - math.pi) <= _CONE_RAD
+        return aimed
 
     def clears(self, points: np.ndarray) -> np.ndarray:
         """Return for each point whether it is free according to this scan."""
@@ -214,6 +232,52 @@ def _codes(cells: np.ndarray) -> np.ndarray:
     return codes
 
 
+@dataclass(frozen=True)
+class View:
+    """The field of view of the newest scans, for a robot at a pose.
+
+    Points are arrays (n, 2) in its frame [m].
+    """
+
+    newest: Sequence[_Seen]
+    ground: _Ground
+    odometry: Pose
+
+    def sees(self, points: np.ndarray) -> np.ndarray:
+        """Return for each point whether a scan looked there, or the ground is known to be free."""
+        found, there = np.zeros(len(points), dtype=bool), out_of(self.odometry, points)
+        for seen in self.newest:
+            here = into(seen.odometry, there)
+            found |= seen.scan.faces(here)
+            if seen.scan.near_m > 0.0 and not found.all():
+                found |= seen.scan.faces_past(here) & self.ground.has(there)
+        return found
+
+    def covers(self, foremost: np.ndarray, outline: np.ndarray, course_rad: float) -> bool:
+        """Return whether the way of a disc is in view, see :func:`fronts`.
+
+        The lasers have to look all along the path of its foremost point; elsewhere, as far as they
+        should and the ground is not known to be free: what is too near to be measured was seen
+        from further away.
+
+        :param course_rad: direction of travel
+        """
+        points, ahead = np.vstack((foremost, outline)), len(foremost)
+        sees = self.sees(points)
+        if not sees[:ahead].all():
+            return False
+        there = out_of(self.odometry, points[~sees])
+        there = there[~self.ground.has(there)]
+        return not any(seen.scan.aims_at(
+            into(seen.odometry, there),
+            course_rad + self.odometry.heading_rad - seen.odometry.heading_rad).any()
+            for seen in self.newest)
+
+
+# None: everything is in view.
+Looks = Optional[View]
+
+
 class Surroundings:
     """The obstacles of a robot's lasers: the newest scan of each, and points now out of view.
 
@@ -290,23 +354,13 @@ class Surroundings:
         return _NOTHING if clear_m - way_m > reach_m else into(odometry, self._met)
 
     def looks(self, odometry: Pose, reach_m: float = KEEP_M) -> Looks:
-        """Return the function for the field of view of the newest scans, for a robot at this pose.
+        """Return the field of view of the newest scans, for a robot at this pose.
 
-        :param reach_m: maximum distance of the points that the function will be given
+        :param reach_m: maximum distance of the points that will be asked for
         """
         if self._all_round_m > reach_m:
             return None
-        newest, ground = list(self._newest.values()), self._ground
-
-        def look(points: np.ndarray) -> np.ndarray:
-            found, there = np.zeros(len(points), dtype=bool), out_of(odometry, points)
-            for seen in newest:
-                here = into(seen.odometry, there)
-                found |= seen.scan.faces(here)
-                if seen.scan.near_m > 0.0 and not found.all():
-                    found |= seen.scan.faces_past(here) & ground.has(there)
-            return found
-        return look
+        return View(list(self._newest.values()), self._ground, odometry)
 
 
 def within_reach(points: np.ndarray, reach_m: float) -> np.ndarray:
@@ -327,8 +381,8 @@ def free_way(points: np.ndarray, radius_m: float, velocity: Velocity) -> float:
     speed_mps = velocity.speed_mps
     if not len(points) or speed_mps == 0.0:
         return math.inf
-    course = _course(velocity)
-    x, y = (into(course, points) if course.heading_rad else points).T
+    course_rad = _course(velocity)
+    x, y = (into(Pose(0.0, 0.0, course_rad), points) if course_rad else points).T
     curvature = velocity.angular_rad_s / speed_mps
     if abs(curvature) < 1e-3:
         near = (np.abs(y) < radius_m) & (x > 0.0)
@@ -338,9 +392,9 @@ def free_way(points: np.ndarray, radius_m: float, velocity: Velocity) -> float:
     return max(0.0, float(ways.min())) if len(ways) else math.inf
 
 
-def _course(velocity: Velocity) -> Pose:
-    """Return the direction of travel in the robot's frame."""
-    return Pose(0.0, 0.0, math.atan2(velocity.lateral_mps, velocity.linear_mps))
+def _course(velocity: Velocity) -> float:
+    """Return the direction of travel in the robot's frame [rad]."""
+    return math.atan2(velocity.lateral_mps, velocity.linear_mps)
 
 
 def _along_arc(x: np.ndarray, y: np.ndarray, turn_m: float, radius_m: float) -> np.ndarray:
@@ -362,34 +416,47 @@ def stopping_speed(way_m: float, delay_s: float) -> float:
     return math.sqrt(lag * lag + 2.0 * BRAKES_MPS2 * max(0.0, way_m)) - lag
 
 
-def fronts(velocity: Velocity, radius_m: float, delay_s: float) -> np.ndarray:
-    """Return the path of a disc's foremost point until the disc can have stopped, (n, 2) [m]."""
-    speed, turn = velocity.speed_mps, velocity.angular_rad_s
+def fronts(velocity: Velocity, radius_m: float,
+           delay_s: float) -> Tuple[np.ndarray, np.ndarray]:
+    """Return the places that a disc comes to until it can have stopped, arrays (n, 2) [m].
+
+    :returns: (the path of its foremost point, the outline of what its front half sweeps: the rim
+        now and at the end, and the paths of both shoulders)
+    """
+    speed, turn, course_rad = velocity.speed_mps, velocity.angular_rad_s, _course(velocity)
     lasts_s = delay_s + speed / (2.0 * BRAKES_MPS2)
-    times = np.linspace(0.0, lasts_s, 5 + min(95, int(speed * lasts_s / _STEP_M)))
-    angles = turn * times
+    count = 5 + min(95, int(speed * lasts_s / _STEP_M))
+    times = np.arange(count) * (lasts_s / (count - 1))
+    angles = course_rad + turn * times
     if abs(turn) < 1e-6:
-        middle = np.column_stack((speed * times, np.zeros(len(times))))
+        x, y = speed * math.cos(course_rad) * times, speed * math.sin(course_rad) * times
     else:
-        middle = speed / turn * np.column_stack((np.sin(angles), 1.0 - np.cos(angles)))
-    return out_of(_course(velocity), middle + radius_m * np.column_stack(
-        (np.cos(angles), np.sin(angles))))
+        x = speed / turn * (np.sin(angles) - math.sin(course_rad))
+        y = speed / turn * (math.cos(course_rad) - np.cos(angles))
+    # For each place on the rim: the step on the way, and the angle to the direction of travel.
+    steps, ones = np.arange(count), np.ones(count)
+    last = np.full(len(_RIM), count - 1)
+    step = np.concatenate((steps, last, 0 * last, steps, steps))
+    side = np.concatenate((0.0 * ones, _RIM, _RIM, _RIM[0] * ones, _RIM[-1] * ones))
+    rim = angles[step] + side
+    places = np.column_stack((x[step] + radius_m * np.cos(rim), y[step] + radius_m * np.sin(rim)))
+    return places[:count], places[count:]
 
 
 def seen_velocity(velocity: Velocity, radius_m: float, delay_s: float, looks: Looks,
                   crawl_mps: float = CRAWL_MPS) -> Velocity:
     """Return the velocity at which a disc can stop before it leaves the field of view.
 
-    It is zero if no scan covers the direction of travel, but a crawl straight back, so that the
-    robot can get away.
+    It is zero if no scan covers the direction of travel, or a laser that should see what lies
+    before a shoulder did not measure it; but a crawl straight back, so that the robot can get away.
 
     :param crawl_mps: speed of the crawl [m/s]; 0 with a laser whose mount is unknown
     """
     if looks is None:
         return velocity
-    least = _crawl(velocity, crawl_mps)
+    least, course_rad = _crawl(velocity, crawl_mps), _course(velocity)
     for slower in map(velocity.slower, _SLOWER):
-        if looks(fronts(slower, radius_m, delay_s)).all():
+        if looks.covers(*fronts(slower, radius_m, delay_s), course_rad):
             return max(slower, least, key=_speed)
     return least
 

@@ -95,8 +95,8 @@ def blind_distances(readings: Readings, step_rad: float, near_m: float,
                     half_m: float) -> np.ndarray:
     """Return the blind distance of each beam [m], inf for an unusable beam.
 
-    An obstacle nearer than ``near_m`` can hide in an unsure beam, unless close beams on both sides
-    measured far beyond it: then nothing as wide as the robot is there.
+    An obstacle nearer than ``near_m`` can hide in an unsure beam, unless beams on both sides of it
+    measured far beyond, so close to each other that nothing as wide as the robot fits in between.
 
     :param near_m: 0 if anything too near to be measured is within the robot; inf if unsure beams
         are unusable
@@ -106,7 +106,7 @@ def blind_distances(readings: Readings, step_rad: float, near_m: float,
     found = np.where(measured | readings.free, 0.0, np.where(readings.unsure, near_m, np.inf))
     if not 0.0 < near_m < math.inf or not readings.unsure.any() or not step_rad:
         return found
-    slack = int(math.asin(min(1.0, half_m / near_m)) / abs(step_rad))
+    most = 2 * int(math.asin(min(1.0, half_m / near_m)) / abs(step_rad))
     with np.errstate(invalid='ignore'):
         far = (readings.ranges >= 2.0 * near_m) | readings.free
     count = len(found)
@@ -116,9 +116,9 @@ def blind_distances(readings: Readings, step_rad: float, near_m: float,
     else:
         begin = 0
     places = np.arange(len(far))
-    before = np.maximum.accumulate(np.where(far, places, -slack - 1))
-    after = np.minimum.accumulate(np.where(far, places, len(far) + slack)[::-1])[::-1]
-    flanked = ((places - before <= slack) & (after - places <= slack))[begin:begin + count]
+    before = np.maximum.accumulate(np.where(far, places, -most - 1))
+    after = np.minimum.accumulate(np.where(far, places, len(far) + most)[::-1])[::-1]
+    flanked = (after - before <= most)[begin:begin + count]
     found[flanked & readings.unsure] = 0.0
     return found
 

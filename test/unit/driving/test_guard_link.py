@@ -215,7 +215,7 @@ def test_the_guard_says_it_so():
     guard = GUARD['Guard']('run', brake=sight, back=GUARD['WayBack'](sight, 10.0))
     assert read_state(guard.state(0.0)).brake == 'no_scan'
     sight.move((0.0, 0.0, 0.0), 0.0)
-    sight.see([0.8], 0.0, 0.1, 0.1, 10.0, 0.0)
+    sight.see([0.8] * 9, -0.4, 0.1, 0.1, 10.0, 0.0)
     assert read_state(guard.state(0.1)).brake == 'on'
     sight.allow((0.6, 0.0, 0.0), 0.1)
     state = read_state(guard.state(0.1))

@@ -250,18 +250,18 @@ def test_ground_that_was_seen_or_stood_on_counts_a_little_beyond_what_is_too_nea
     points = np.array([[x, 0.01] for x in (0.02, 0.1, 0.24, 0.26, 0.4, 0.46)])
     seen.see(blind(0.0), Pose(0.0, 0.0, 0.0))
     seen.see(blind(0.45), ahead, 0.1)
-    assert list(seen.looks(ahead)(points)) == [True, True, True, False, False, True]
+    assert list(seen.looks(ahead).sees(points)) == [True, True, True, False, False, True]
     seen.see(blind(0.45), ahead, 10.1)
-    assert seen.looks(ahead)(points[:1])[0], 'after 10 s'
+    assert seen.looks(ahead).sees(points[:1])[0], 'after 10 s'
     seen.see(blind(0.45), ahead, 20.2)
-    assert list(seen.looks(ahead)(points)) == [True, True, False, False, False, True], 'no more'
+    assert list(seen.looks(ahead).sees(points)) == [True, True, False, False, False, True]
 
 
 def test_where_it_looked_turns_with_the_robot():
     seen = Surroundings()
     seen.see(sector(57), Pose(0.0, 0.0, 0.0))
     looks = seen.looks(Pose(0.0, 0.0, math.pi / 2))
-    assert list(looks(np.array([[1.0, 0.0], [0.0, -1.0]]))) == [False, True]
+    assert list(looks.sees(np.array([[1.0, 0.0], [0.0, -1.0]]))) == [False, True]
 
 
 FRONT, REAR = Pose(0.2, 0.0, 0.0), Pose(-0.2, 0.0, math.pi)
@@ -272,7 +272,7 @@ def test_two_lasers_see_what_each_of_them_meets():
     seen.see(sector(180, 2.0, FRONT), here, 0.00, 'front')
     seen.see(sector(180, 3.0, REAR), here, 0.05, 'rear')
     ends = np.array([[1.0, 0.0], [-1.0, 0.0]])
-    assert list(seen.looks(here)(ends)) == [True, True]
+    assert list(seen.looks(here).sees(ends)) == [True, True]
     met = seen.around(here)
     assert met[:, 0].max() == pytest.approx(2.2, abs=0.01)
     assert met[:, 0].min() == pytest.approx(-3.2, abs=0.01)
@@ -286,7 +286,7 @@ def test_of_two_lasers_one_that_falls_silent_looks_no_more():
     seen.see(sector(180, 0.8, FRONT), here, 0.0, 'front')
     for at_s in (0.1, 0.2, 0.31, 0.4):
         seen.see(sector(180, 3.0, REAR), here, at_s, 'rear')
-    assert list(seen.looks(here)(np.array([[1.0, 0.0], [-1.0, 0.0]]))) == [False, True]
+    assert list(seen.looks(here).sees(np.array([[1.0, 0.0], [-1.0, 0.0]]))) == [False, True]
     # What it met near by is remembered.
     ahead = braked(Velocity(0.3, 0.0), seen.around(here), RADIUS_M, 0.1, seen.looks(here))
     assert ahead.linear_mps == 0.0

@@ -85,6 +85,26 @@ def test_a_good_laser_that_turns_into_one_stops_the_robot(kind, what):
     assert drive.fastest_mps > 0.2, 'it measures again'
 
 
+@pytest.mark.parametrize('kind', sorted(KINDS))
+@pytest.mark.parametrize('side', [-1, 1])
+def test_a_laser_that_is_covered_on_one_side_stops_the_robot_before_what_it_hides(kind, side):
+    """From the start, and while it drives at a pole before that shoulder."""
+    drive = Drive(KINDS[kind], corridor(8.0, 2.6), discs=[(2.0, 0.12 * side, 0.03)])
+
+    def cover(ranges):
+        angles = (np.arange(len(ranges)) - len(ranges) // 2) * drive.laser.increment_rad
+        return np.where(side * angles > math.radians(3.0), -INF, ranges)
+
+    drive.sends = cover
+    assert drive.go(2.0) == 0.0 and drive.says() == UNSEEN
+    drive.sends = lambda ranges: ranges
+    drive.go(1.0)
+    assert drive.fastest_mps > 0.2
+    drive.sends = cover
+    drive.go(12.0)
+    assert drive.speed_mps == 0.0 and drive.closest_m > 0.05
+
+
 @pytest.mark.parametrize('kind', ['TurtleBot3', 'TurtleBot2'])
 @pytest.mark.parametrize('width', [1.6, 2.6])
 def test_a_corridor_and_an_empty_hall_are_driven_at_full_speed(kind, width):
