@@ -71,7 +71,7 @@ class SightShape:
         times = tuple([(round(max(at - now, -FELL_WITHIN_S - STEP_S), 3), share)
                        for at, share, _ in past])
         form = (newest and newest.scan.looks_anywhere, seen._clear[1], len(seen._met), seen._fresh,
-                life and (life._measured, life._dead), times)
+                life and life._alive, times)
         if form not in self._numbers:
             self._numbers[form] = len(self._forms)
             self._forms.append((seen, life, times))

@@ -21,9 +21,8 @@ from mhri.base.plausible import BOUNDS, RANGE
 NO_RETURN = (math.inf,)
 # A laser whose share of measuring beams falls from this to nothing within this time is dead [s].
 FELL_FROM, FELL_WITHIN_S = 1.0 / 3.0, 1.0
-# Unless the robot has turned by this share of the field of view; or, if the previous scan is older
-# than that, has moved this far [m].
-TURNED_SHARE, MOVED_M = 0.25, 0.5
+# Unless the robot has turned by this share of the field of view.
+TURNED_SHARE = 0.25
 # "Nothing there" is not used from a laser with a longer blind distance [m].
 MAX_NEAR_M = 1.5
 _SAME_M = 1e-3
@@ -126,14 +125,13 @@ def blind_distances(readings: Readings, step_rad: float, near_m: float,
 class LaserLife:
     """Judges whether a laser is alive if a dead one may send its "nothing there" as well.
 
-    It counts as dead before its first measurement, and after the share of its measuring beams fell
-    from a third to zero within a second while the robot hardly turned, until it measures again. A
-    gradual fall means open space, such as a hall.
+    It counts as dead before its first measurement; if it was not heard for a second; and after the
+    share of its measuring beams fell from a third to zero within a second while the robot hardly
+    turned. It is alive once it measures again. A gradual fall means open space, such as a hall.
     """
 
     def __init__(self) -> None:
-        self._measured = False
-        self._dead = False
+        self._alive = False
         self._past: Deque[Tuple[float, float, Pose]] = deque()
 
     def look(self, sure_share: float, pose: Pose, at_s: float, field_rad: float) -> bool:
@@ -142,22 +140,12 @@ class LaserLife:
         :param pose: of the robot, by its odometry
         :param field_rad: its field of view
         """
-        if sure_share > 0.0:
-            self._measured, self._dead = True, False
-        elif not self._dead:
-            self._dead = not self._measured or self._fell(pose, at_s, field_rad)
-        self._past.append((at_s, sure_share, pose))
-        # Keep the previous scan whatever its age: scans may be far apart.
-        while len(self._past) > 2 and at_s - self._past[0][0] > FELL_WITHIN_S:
+        while self._past and at_s - self._past[0][0] > FELL_WITHIN_S:
             self._past.popleft()
-        return not self._dead
-
-    def _fell(self, pose: Pose, at_s: float, field_rad: float) -> bool:
-        for number, (then_s, share, then) in enumerate(reversed(self._past)):
-            late = at_s - then_s > FELL_WITHIN_S
-            if late and (number or math.hypot(pose.x_m - then.x_m, pose.y_m - then.y_m) > MOVED_M):
-                break
-            turned = abs(math.remainder(pose.heading_rad - then.heading_rad, 2.0 * math.pi))
-            if share >= FELL_FROM and turned < TURNED_SHARE * field_rad:
-                return True
-        return False
+        self._alive = sure_share > 0.0 or (
+            self._alive and bool(self._past) and not any(
+                share >= FELL_FROM and TURNED_SHARE * field_rad > abs(
+                    math.remainder(pose.heading_rad - then.heading_rad, 2.0 * math.pi))
+                for _, share, then in self._past))
+        self._past.append((at_s, sure_share, pose))
+        return self._alive

@@ -24,16 +24,17 @@ THERE = '11.1', 'y=2.6'
 
 
 class Cover:
-    """Passes the scans of bot1 on, covered or not."""
+    """Passes the scans of bot1 on, covered or not; a dead laser measures nothing."""
 
     def __init__(self):
-        self.covers = False
+        self.covers = self.is_dead = False
         self._publisher = rospy.Publisher('/bot1/scan', LaserScan, queue_size=1)
         self._subscriber = rospy.Subscriber('/bot1/bare_scan', LaserScan, self._pass_on,
                                             queue_size=1)
 
     def _pass_on(self, scan):
-        scan.ranges = list(scan.ranges)
+        # 0.0 means "nothing there" as well.
+        scan.ranges = [0.0] * len(scan.ranges) if self.is_dead else list(scan.ranges)
         for number in range(len(scan.ranges)) if self.covers else ():
             angle = scan.angle_min + number * scan.angle_increment
             if math.sin(angle) < 0.0 and abs(math.remainder(angle, 2.0 * math.pi)) > math.radians(
@@ -93,6 +94,23 @@ class Covered(BrakeCase):
                         and robot.brake == RobotDrive.BRAKE_ON, 'the guard')
         self.ready('bot1')
         self.stands_while_covered()
+
+    def test_a_laser_that_dies_while_the_brake_is_off_is_no_empty_hall(self):
+        self.bot1()
+        self.ask(True)
+        self.wait_robot('bot1', lambda robot: robot.brake == RobotDrive.BRAKE_ON, 'its laser')
+        self.ask(False)
+        self.addCleanup(setattr, self.cover, 'is_dead', False)
+        self.cover.is_dead = True
+        place = self.hall.places.last()
+        self.drive_to(place - 0.6, -0.25)
+        before = self.hall.places.last()
+        self.ask(True)
+        self.wait_robot('bot1', lambda robot: robot.brake == RobotDrive.BRAKE_NO_SCAN, 'the word')
+        self.push_to_rest(self.speed_mps)
+        self.assertLess(self.hall.places.last() - before, 0.01)
+        self.cover.is_dead = False
+        self.drive_to(10.9, self.speed_mps)
 
     def test_a_task_ends_with_the_reason(self):
         before = self.hall.places.last()

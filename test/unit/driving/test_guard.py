@@ -186,7 +186,7 @@ def test_a_laser_is_dead_when_the_host_takes_it_for_dead():
         mine, host = GUARD['LaserLife'](), readings.LaserLife()
         now = turned = 0.0
         for _ in range(8):
-            now += dice.choice((0.0, 0.25, 0.5, 1.0))
+            now += dice.choice((0.0, 0.25, 0.5, 1.0, 1.25))
             turned += dice.choice((0.0, 0.0, 0.25, -0.5, 0.5, 3.0))
             share = dice.choice((0.0, 0.0, 0.2, 1.0 / 3.0, 1.0))
             assert mine.look(share, (0.0, 0.0, turned), now, field) == host.look(

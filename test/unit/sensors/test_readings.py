@@ -85,6 +85,26 @@ def test_a_good_laser_that_turns_into_one_stops_the_robot(kind, what):
     assert drive.fastest_mps > 0.2, 'it measures again'
 
 
+@pytest.mark.parametrize('kind', ['TurtleBot3', 'TurtleBot2'])
+@pytest.mark.parametrize('brake_is_off', [True, False])
+def test_a_laser_that_was_not_heard_for_a_while_has_to_measure_anew(kind, brake_is_off):
+    """It dies meanwhile: what it sends then may as well mean an empty hall."""
+    drive = Drive(KINDS[kind], [*wall_at(6.0), *corridor(9.0, 1.6)])
+    drive.go(1.5)
+    assert drive.says() == ON
+    drive.brake.ask(not brake_is_off)
+    drive.every = 10 ** 9
+    assert (drive.go(2.0) > 0.5) == brake_is_off
+    drive.brake.ask(True)
+    drive.every = 2
+    drive.sends = lambda ranges: np.full(len(ranges), KINDS[kind].nothing)
+    drive.go(2.0)
+    assert drive.speed_mps == 0.0 and drive.says() == NO_SCAN
+    drive.sends = lambda ranges: ranges
+    drive.go(1.0)
+    assert drive.fastest_mps > 0.2
+
+
 @pytest.mark.parametrize('kind', sorted(KINDS))
 @pytest.mark.parametrize('side', [-1, 1])
 def test_a_laser_that_is_covered_on_one_side_stops_the_robot_before_what_it_hides(kind, side):
