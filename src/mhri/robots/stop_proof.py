@@ -72,10 +72,10 @@ class OdometryWitness:
     def __init__(self) -> None:
         self.follows = True
         self._pose = PoseWatch()
-        # Since when it is commanded, and only to turn; and until when it was.
+        # Since when it is commanded, and only to turn; until when it was, and when it last moved.
         self._since: Optional[float] = None
         self._only_turns = False
-        self._until = -math.inf
+        self._until = self._moved_at = -math.inf
         # {only to turn: for how long in earlier pushes since it moved [s]}
         self._told_s = {False: 0.0, True: 0.0}
         self._still = 0
@@ -90,7 +90,7 @@ class OdometryWitness:
         goes = velocity.speed_mps >= MIN_TOLD_MPS
         turns = not goes and abs(velocity.angular_rad_s) >= MIN_TOLD_RAD_S
         if self._since is not None and (self._only_turns != turns or not (goes or turns)):
-            self._told_s[self._only_turns] += now - self._since
+            self._told_s[self._only_turns] += now - max(self._since, self._moved_at)
             self._since, self._until = None, now
         if self._since is None and (goes or turns):
             self._since, self._only_turns = now, turns
@@ -108,7 +108,7 @@ class OdometryWitness:
         if round_trip_s != round_trip_s:
             round_trip_s = UNKNOWN_ROUND_TRIP_S
         if moves:
-            self._told_s[self._only_turns], self._still = 0.0, 0
+            self._told_s[self._only_turns], self._still, self._moved_at = 0.0, 0, now
             self.follows = self.follows or self._since is not None
         elif self._since is not None and (
                 self._told_s[self._only_turns] + now - self._since

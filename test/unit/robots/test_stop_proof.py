@@ -299,6 +299,10 @@ DRIVES = {
     'frozen_at_once_after_it_followed': ([(GO, MOVES, 0.1, 4.0), (GO, REST, 0.1, 0.3)], False),
     'follows': ([(GO, MOVES, 0.1, 4.0), (HOLD, REST, 0.1, 4.0)], True),
     'motors_that_take_their_time': ([(GO, REST, 0.1, 0.8), (GO, MOVES, 0.1, 1.0)], True),
+    'sets_off_late_after_a_push_that_moved_it': (
+        [(GO, MOVES, 0.1, 4.0), (HOLD, REST, 0.1, 1.0), (GO, REST, 0.1, 0.8)], True),
+    'moved_at_the_beginning_of_each_push': (
+        [(GO, MOVES, 0.1, 0.5), (GO, REST, 0.1, 0.4), (HOLD, REST, 0.1, 1.0)] * 4, True),
     'told_nothing': ([(HOLD, REST, 0.1, 10.0)], True),
     'told_less_than_friction': ([(CREEP, REST, 0.1, 10.0)], True),
     'at_the_limit_of_rest': ([(GO, Motion(STANDSTILL_MPS, 0.0), 0.1, 4.0)], False),
