@@ -1,12 +1,16 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """What tests that drive a simulated robot at a wall share."""
+import signal
+import sys
 import time
 
 from geometry_msgs.msg import PoseStamped
+import rospy
 
 from support.drive_case import DriveCase
-from support.node_tools import Recorder
+from support.node_tools import Process, Recorder
+from support.paths import GUARD
 from support.ros_system import wait_for
 
 # The wall to the east of the hall [m].
@@ -52,6 +56,20 @@ class HallCase(DriveCase):
     def setUpClass(cls):
         super().setUpClass()
         cls.hall = Hall('bot1', cls.radius_m)
+
+    def start_guard(self, *options):
+        """Start a guard on bot1, a TurtleBot3, until the end of the test; return its process."""
+        guard = Process([sys.executable, GUARD, '_command:=cmd_vel',
+                         '_radius_m:={}'.format(self.radius_m), '_no_return:=0,inf@3.5', *options],
+                        env={'ROS_NAMESPACE': 'bot1'})
+
+        def leave():
+            guard.send(signal.SIGTERM)
+            guard.wait()
+            guard.end()
+            rospy.delete_param('/bot1/mhri_guard')
+        self.addCleanup(leave)
+        return guard
 
     def drive_past(self, x, linear):
         """Drive bot1 past a place along the hall [m]; return where it is then."""

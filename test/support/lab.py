@@ -207,6 +207,7 @@ class Operator:
     def __init__(self, lab):
         import rospy
         from mhri.msg import ControlMode
+        from support.fake_mux import StateEar
         from support.robots import Stick, Witness
         self.lab, self.system = lab, lab.system
         self.system.screen()
@@ -215,7 +216,7 @@ class Operator:
         self.system.node('mux', '__name:=mux')
         self.system.node('panel', '--fresh', '--select', 'bot1 bot2', '__name:=mhri_panel')
         self.witnesses = {name: Witness(name) for name in ('bot1', 'bot2')}
-        self.stick = Stick()
+        self.stick, self.state = Stick(), StateEar()
         self._mode = rospy.Publisher(graph.MODE_SELECT, ControlMode, queue_size=1, latch=True)
         self._mode.publish('pedal')
 

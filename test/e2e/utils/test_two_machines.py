@@ -67,7 +67,7 @@ def latencies_ms(operator, rows, turns=30):
         time.sleep(0.04)
     operator.stick.hold(0.2, 0.6)
     wait_for(lambda: rows(3)[-1][0] > sent[-1] + 0.1 or operator.stick.longest_gap_s > STALE_S, 20,
-             'the last change', poll_s=0.05)
+             lambda: 'the last change; {!r}'.format(operator.state), poll_s=0.05)
     times = []
     for begin, end in zip(sent, sent[1:]):
         before = [row for row in rows(3) if row[0] < begin][-1]

@@ -2,17 +2,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A laser that is covered on one side: the stick's brake, the guard's, and a robot on a task."""
 import math
-import signal
-import sys
 
 import rospy
 from sensor_msgs.msg import LaserScan
 
 from mhri.msg import RobotDrive
 from support.drive_tools import BrakeCase
-from support.node_tools import Process
 from support.own_node import own_node
-from support.paths import GUARD
 from support.tasks_case import task_tool
 
 system = own_node('covered', 'covered.launch')
@@ -80,15 +76,7 @@ class Covered(BrakeCase):
         self.stands_while_covered()
 
     def test_the_guard_brakes(self):
-        guard = Process([sys.executable, GUARD, '_command:=cmd_vel', '_radius_m:=0.22',
-                         '_brake:=true', '_no_return:=0,inf@3.5'], env={'ROS_NAMESPACE': 'bot1'})
-
-        def leave():
-            guard.send(signal.SIGTERM)
-            guard.wait()
-            guard.end()
-            rospy.delete_param('/bot1/mhri_guard')
-        self.addCleanup(leave)
+        self.start_guard('_brake:=true')
         self.operator.check('bot1')
         self.wait_robot('bot1', lambda robot: robot.brake_on_robot
                         and robot.brake == RobotDrive.BRAKE_ON, 'the guard')

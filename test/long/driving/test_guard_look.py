@@ -1,19 +1,14 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """What the guard does by itself: it brakes, and goes back to where it was heard."""
-import signal
-import sys
 import time
-
-import rospy
 
 from mhri.msg import RobotDrive
 from support.drive_case import ZERO
 from support.drive_tools import HallCase
 from support.own_node import own_node
-from support.paths import GUARD
 from support.ros_system import freeze, thaw, wait_for
-from support.node_tools import measured, Process
+from support.node_tools import measured
 from support.velocity import VelocityEnd
 
 system = own_node('guard_look', 'guard_look.launch')
@@ -34,15 +29,7 @@ class GuardLook(HallCase):
 
     def guarded(self, *options):
         """Select bot1, with a guard that was started with some options, and centre the stick."""
-        guard = Process([sys.executable, GUARD, '_command:=cmd_vel', '_radius_m:=0.22',
-                         '_no_return:=0,inf@3.5', *options], env={'ROS_NAMESPACE': 'bot1'})
-
-        def leave():
-            guard.send(signal.SIGTERM)
-            guard.wait()
-            guard.end()
-            rospy.delete_param('/bot1/mhri_guard')
-        self.addCleanup(leave)
+        guard = self.start_guard(*options)
         self.operator.check('bot1')
         self.wait_robot('bot1', lambda robot: robot.guarded, 'the guard')
         self.ready('bot1')
