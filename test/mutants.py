@@ -48,7 +48,7 @@ TESTS = {
     'driving/motor_power': 'motor_power',
     'driving/topic_owner': 'driving_parts ' + ALL, 'driving/robot_rule': 'robot_rule ' + ALL,
     'driving/operator_lease': 'operator_lease ' + ALL, 'driving/selection': 'selection',
-    'driving/settings': ALL,
+    'driving/settings': ALL, 'driving/stopped_alone': ALL,
     'driving/sources': 'sources arbiter_sources ' + ALL, 'driving/stick_brake': 'stick_brake',
     'driving/robot_stops': 'robot_stops', 'driving/stop_words': 'stop_words',
     'driving/task_relay': 'driving_parts ' + ALL,
@@ -57,6 +57,7 @@ TESTS = {
     'robots/stop_proof': 'test/unit/robots/test_stop_proof.py',
     'robots/listeners': 'test/unit/robots/test_listeners.py',
     'robots/twins': 'test/unit/robots/test_twins.py every_state',
+    'robots/goal_watch': 'test/unit/robots/test_goal_watch.py',
     'sensors/brake': 'covered test/unit/sensors/test_brake.py stick_brake guard',
     GUARD: 'covered guard_tables guard guard_link every_state'}
 FASTER, FALSY, NEVER, PASSED, JUST_THERE, BOTH_WAYS = (

@@ -72,10 +72,25 @@ class DriveCase(unittest.TestCase):
     def start_drive(cls):
         """Start the drive, and wait until it listens and this node is in control."""
         before = cls.state.message.run if cls.state.message else ''
+        cls.launch_drive()
+        cls.wait_for_drive(before)
+
+    @classmethod
+    def launch_drive(cls):
+        """Start the drive with what stands by; return at once."""
         cls.drive_process = Process(
             roslib.packages.find_node('mhri', 'mux')[:1] + ['--stand-by'],
             {'ROS_HOME': os.path.dirname(cls.home)}, output=cls.output)
-        cls.wait_for_drive(before)
+
+    @classmethod
+    def kill_both(cls):
+        """Kill the drive and what stands by, and start both anew as roslaunch does."""
+        run = cls.state.message.run
+        for number in (cls.drive_process.number, cls.worker()):
+            os.kill(number, signal.SIGKILL)
+        cls.drive_process.end()
+        cls.launch_drive()
+        cls.state.wait(lambda state: state.run != run, 'the next one', 20.0)
 
     @classmethod
     def wait_for_drive(cls, before):

@@ -42,8 +42,9 @@ class Contract:
         self.owners, self.let_go = {'joy': None, 'pad': None}, False
         self.task_free, self.task_at = dict.fromkeys(ROBOTS, False), {}
         self.selected, self.late = (), {}
-        self.most, self.driven = dict.fromkeys(ROBOTS, LIMITS[0]), dict.fromkeys(ROBOTS, False)
-        self.newest_run, self.settings = 0, SETTINGS['a']
+        # Of the robots that were selected last, the lowest limits since.
+        self.most, self.chosen = dict.fromkeys(ROBOTS, LIMITS[0]), ()
+        self.newest_run, self.settings, self.own = 0, SETTINGS['a'], {}
         # Since when it is gone; whether it holds the stop of another master's drive.
         self.guard_gone_at, self.foreign = None, False
         # What the laser of p saw last, and when; since when its brake is asked for.
@@ -138,10 +139,20 @@ class Contract:
             self._restless(ROBOTS)
         for name in ROBOTS:
             if new_holder or name not in robots:
-                self.driven[name] = False
                 self.most[name] = self.drive._type_limits[name]
+        self.chosen = robots
         self.wish, self.wish_at = robots, self.now
-        self.settings = settings
+        self.settings = self.own[caller.name] = settings
+
+    def _take_over(self, caller):
+        """Note who has taken control: nothing is less safe than that operator had it."""
+        self._end_wish()
+        self.holder = caller
+        self.refused.discard(caller)
+        own, now = self.own.get(caller.name, self.settings), self.settings
+        self.settings = now._replace(
+            linear_mps=min(now.linear_mps, own.linear_mps), brake=now.brake or own.brake,
+            angular_rad_s=min(now.angular_rad_s, own.angular_rad_s))
 
     def _reselect(self):
         """Note who is selected: a task is interrupted by every change of that."""

@@ -108,7 +108,7 @@ class Packing:
               'tools': world.tools}),
             (drive, {}, {name: vars(drive)[name] for name in (
                 'arbiter', '_sources', '_owners', '_pulse', 'lease', '_driven', 'relay',
-                '_buttons', 'accessories', '_on_refused',
+                '_buttons', '_settings', '_alone', 'accessories', '_on_refused',
                 '_connected', '_rules', 'said', 'share', 'wishes', 'changes')}),
             (drive.arbiter, {'_stick_at': STALE_S, '_enabled_at': ENABLING_S, '_zeros_until': 0.0,
                              '_next_repeat': 0.0},
@@ -119,6 +119,8 @@ class Packing:
             (drive._driven, {}, {}),
             (drive.relay, {}, {'refused': drive.relay.refused, 'held': drive.relay.held}),
             (drive._buttons, {}, {}),
+            (drive._settings, {}, {}),
+            (drive._alone, {}, {}),
             *((owner, {}, {}) for owner in drive._owners.values()),
             *((rule, {'_task_at': TASK_STALE_S, '_zeros_until': 0.0, '_zero_at': STEP_S},
                {'_share': 1.0, '_brake': None}) for rule in drive.robots.values()),
@@ -150,7 +152,8 @@ class Packing:
         normalise(world)
         drive = world.drive
         parts = (world, drive, drive.arbiter, drive._pulse, drive.lease, drive._driven,
-                 drive.relay, drive._buttons, *drive._owners.values(),
+                 drive.relay, drive._buttons, drive._settings, drive._alone,
+                 *drive._owners.values(),
                  drive.robots['g'], drive.robots['p'],
                  drive.accessories, *drive.accessories.of('p').values(),
                  world.link, world.guard, world.live, world.eye, world.proof, world.eye._seen)
@@ -160,8 +163,8 @@ class Packing:
         """Return the world of some numbers; the time is 0."""
         parts = [shape.unpack(number) for shape, number in zip(self._shapes, numbers)]
         world, drive, drive.arbiter, drive._pulse, drive.lease, drive._driven, drive.relay, \
-            drive._buttons = parts[:8]
-        *rest, world.link, world.guard, world.live, world.eye, world.proof, seen = parts[8:]
+            drive._buttons, drive._settings, drive._alone = parts[:10]
+        *rest, world.link, world.guard, world.live, world.eye, world.proof, seen = parts[10:]
         owners, (rule_g, rule_p, drive.accessories, *tools) = (
             rest[:len(self._sources)], rest[len(self._sources):])
         world.eye._seen = seen

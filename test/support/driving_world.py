@@ -111,8 +111,6 @@ class World(Tools):
         for number in range(int(steps)):
             self._pass_time(number)
             before = self.drive.mode
-            for name, rule in self.drive.robots.items():
-                self.driven[name] = self.driven[name] or any(rule.sent) and rule.selected
             self._tell(self.drive.tick, self._there())
             # Of what was due something may still be: numbers are rounded.
             again = self.drive.next_tick(self.now)
@@ -288,9 +286,7 @@ class World(Tools):
         if self.there[name] == 'off':
             return False
         caller, orders = self._caller(name), self.drive.on_take(self._caller(name), self.now)
-        self._end_wish()
-        self.holder = caller
-        self.refused.discard(caller)
+        self._take_over(caller)
         self._settle_owners()
         return self._carry_out(orders)
 
@@ -384,7 +380,7 @@ class World(Tools):
         """A robot is there anew, with other limits."""
         self._carry_out(self.drive.close_robot(name, self.now))
         new = LIMITS[int(limits)]
-        self.most[name] = min(new, self.most[name] if self.driven[name] else new,
+        self.most[name] = min(new, self.most[name] if name in self.chosen else new,
                               key=lambda limits: limits.linear_mps)
         self.held[name] = False
         if name == 'p':

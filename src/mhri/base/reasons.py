@@ -48,8 +48,8 @@ _WORDS: Dict[str, Tuple[str, str]] = {
     JOINING: ('centre the stick to drive', ''),
     GUARD_VERSION: ('guard version', 'its guard has another one, so it is held still; send it '
                     'this one with turtlebot_deploy.sh'),
-    UNREACHABLE: ('own mux', 'that writes its velocity, so it is held still; set its parameter '
-                  'mhri/command to an input of that'),
+    UNREACHABLE: ('held still', 'a multiplexer writes its velocity, or it only commands another '
+                  'robot'),
     TWO_ROBOTS: ('two robots', 'two computers are this one, so it is held still; end one of '
                  'them'),
     NEUTRAL: ('centre the stick to drive', ''),

@@ -79,6 +79,7 @@ class Seen:
     :param behind: its velocity topics published by one of its own nodes that also subscribes
         velocities: a multiplexer with its lock
     :param guard_behind: the ones of these that its guard publishes as well
+    :param input_of: another robot, whose base its velocity topics command; None if they do not
     """
 
     at_root: bool = False
@@ -87,10 +88,12 @@ class Seen:
     instance: Optional[str] = None
     behind: Tuple[str, ...] = ()
     guard_behind: Tuple[str, ...] = ()
+    input_of: Optional[str] = None
 
     def anything(self) -> bool:
         """Return whether anything besides its name is known."""
-        return bool(self.at_root or self.kind or self.command or self.instance or self.behind)
+        return bool(self.at_root or self.kind or self.command or self.instance or self.behind
+                    or self.input_of)
 
 
 @dataclass(frozen=True)
@@ -424,13 +427,14 @@ def resolve_robot_type(types: Mapping[str, RobotType], robot: str, params: Mappi
                 chosen = replace(chosen, window=standard.window)
         except ConfigError as error:
             errors.append(error)
-    errors += _behind_error(chosen, origin)
+    errors += _behind_error(chosen, origin, seen.input_of)
     return chosen.at_root() if seen.at_root else chosen, errors
 
 
 def _behind(chosen: RobotType, seen: Seen, overrides: object) -> RobotType:
     """Return a generic type with its topics behind the robot's own multiplexer marked.
 
+    All of a namespace are that only commands another robot: mhri must not drive that twice.
     Topics set by the robot's parameters are not marked: they were chosen deliberately.
     """
     if chosen.name != 'generic':
@@ -438,16 +442,20 @@ def _behind(chosen: RobotType, seen: Seen, overrides: object) -> RobotType:
     named = overrides.get('command') if isinstance(overrides, dict) else None
     known = {one for one in named if isinstance(one, str)} if isinstance(named, list) else set()
     return replace(chosen, guard_behind=bool(set(seen.guard_behind) - known), behind=tuple(
-        one for one in chosen.command if one in seen.behind and one not in known))
+        one for one in chosen.command
+        if (seen.input_of or one in seen.behind) and one not in known))
 
 
-def _behind_error(chosen: RobotType, origin: str) -> List[ConfigError]:
-    """Return the error if only the robot's own multiplexer may drive it, with the remedy; or []."""
+def _behind_error(chosen: RobotType, origin: str, input_of: Optional[str]) -> List[ConfigError]:
+    """Return the error if only its own multiplexer may drive it, with the remedy; or []."""
     if not chosen.is_behind:
         return []
-    return [ConfigError(origin, 'mhri/command', 'its velocity topic {} is written by a node of its '
-                        'own, behind whose lock mhri must not drive: set this parameter to a topic '
-                        'that this node reads'.format(chosen.behind[0]))]
+    if input_of:
+        return [ConfigError(origin, '', 'its velocity goes to the base of {}: '
+                            'select that one'.format(input_of))]
+    return [ConfigError(origin, 'mhri/command', 'its velocity topic {} is written by a node that '
+                        'reads velocity itself, behind whose lock mhri must not drive: set this '
+                        'parameter to a topic that this node reads'.format(chosen.behind[0]))]
 
 
 def _overridden(robot_type: RobotType, overrides: object, origin: str) -> RobotType:

@@ -30,8 +30,9 @@ from mhri.driving.buttons import ButtonEdges
 from mhri.driving.driven_limits import DrivenLimits
 from mhri.driving.operator_lease import Caller, LAPSED, LEASED, MAX_ROBOTS, OperatorLease
 from mhri.driving.robot_rule import Brake, OPERATOR, RobotRule, TASK
-from mhri.driving.settings import Settings, settings_problem
+from mhri.driving.settings import Settings, settings_problem, SettingsInForce
 from mhri.driving.sources import MuxConfig, Source
+from mhri.driving.stopped_alone import StoppedAlone
 from mhri.driving.task_relay import NOTHING, PASS_ZEROS, TaskRelay
 from mhri.driving.topic_owner import TopicOwner
 from mhri.robots.link_quality import link_share
@@ -41,6 +42,7 @@ Order = Tuple[str, Union[Velocity, Act]]
 Orders = List[Order]
 # Maximum time between two ticks [s], short enough to detect a suspension of the process.
 LOOK_S = 0.05
+LOST: Dict[str, Any] = {'stop': True, 'forgotten': True}  #: the state if the previous one is lost
 # A refused wish is counted under one of these.
 SELECT, SETTINGS, ACCESSORY = 'robot_select', 'settings', 'accessory'
 
@@ -70,15 +72,13 @@ class Drive:
         self._buttons = ButtonEdges()
         self._on_refused = on_refused
         self._connected = connected
-        #: the :class:`Settings` in force
-        self.settings = Settings(config.linear_mps, config.angular_rad_s)
+        self._settings = SettingsInForce(Settings(config.linear_mps, config.angular_rad_s))
         self._rules: Dict[str, RobotRule] = {}
         #: the :class:`Accessories` of all robots; read only
         self.accessories = Accessories(self._rules, self._authority)
         self._type_limits: Dict[str, Limits] = {}
         self._round_trips: Dict[str, float] = {}
-        # {robot stopped alone: (operator at that time, whether a selection has left it out since)}
-        self._alone: Dict[str, Tuple[str, bool]] = {}
+        self._alone = StoppedAlone()
         self._command: Optional[Velocity] = None
         self._wished_mode: Tuple[Optional[Caller], str] = None, ''
         self._closed, self._undertaken = False, True
@@ -114,6 +114,11 @@ class Drive:
         return self.arbiter.source
 
     @property
+    def settings(self) -> Settings:
+        """The :class:`Settings` in force."""
+        return self._settings.in_force
+
+    @property
     def command(self) -> Velocity:
         """The operator's current command."""
         return self._command or ZERO
@@ -121,7 +126,7 @@ class Drive:
     @property
     def alone(self) -> FrozenSet[str]:
         """The robots that were stopped alone."""
-        return frozenset(self._alone)
+        return self._alone.names
 
     @property
     def robots(self) -> Mapping[str, RobotRule]:
@@ -238,11 +243,11 @@ class Drive:
             self._on_refused(caller.name, SELECT)
             return self._done(), ''
         self.wishes += 1
-        self.settings = settings[0] if settings else self.settings
         new_holder = self.lease.holder != before[0]
+        self._settings.on_wish(self.lease.operator, settings)
         self._driven.select(() if new_holder else robots)
         # A message queued in a socket while this program was suspended may predate the stop.
-        freed = self._awake(now) and self._select_again(caller.name, robots)
+        freed = self._awake(now) and self._alone.select(caller.name, robots)
         if freed or (self.lease.holder, self.lease.selected, self.settings) != before:
             if new_holder:
                 self._take_sources(now)
@@ -251,20 +256,6 @@ class Drive:
             self._wished_mode = caller, mode
             problem = self._choose(mode, now) if mode else None
         return self._done(), problem or ''
-
-    def _select_again(self, operator: str, robots: Sequence[str]) -> bool:
-        """End the stop of robots that are selected again; return whether one has ended.
-
-        It ends with a selection that includes the robot after one without it, or with the first
-        selection of another operator that includes it.
-        """
-        before = dict(self._alone)
-        for name, (whose, left_out) in before.items():
-            if name not in robots:
-                self._alone[name] = whose, True
-            elif left_out or operator != whose:
-                del self._alone[name]
-        return len(self._alone) < len(before)
 
     def _take_sources(self, now: float) -> None:
         """Make the operator in control, if any, the owner of the sources it publishes."""
@@ -275,6 +266,7 @@ class Drive:
     def on_take(self, caller: Caller, now: float) -> Orders:
         """Put a caller in control: all robots get a zero, and neutral is required."""
         self.lease.take(caller, now)
+        self._settings.on_control(caller.name)
         self._take_sources(now)
         self._apply(now)
         self._everybody_joins(now)
@@ -319,8 +311,8 @@ class Drive:
         """
         self._awake(now)
         for name in names:
-            if name in self._rules or len(self._alone) < MAX_ROBOTS:
-                self._alone[name] = self.lease.operator, False
+            if name in self._rules or len(self.alone) < MAX_ROBOTS:
+                self._alone.stop(name, self.lease.operator)
         self._settle_stops(now)
         return self._done()
 
@@ -335,23 +327,24 @@ class Drive:
     def _settle_stops(self, now: float) -> None:
         self.changes += 1
         for name, rule in self._rules.items():
-            self._send(name, rule.stop(self.stop_all, name in self._alone, now))
+            self._send(name, rule.stop(self.stop_all, name in self.alone, now))
 
     # Robots.
 
     def open(self, name: str, limits: Limits, now: float,
              brake: Brake = lambda velocity, _: velocity,
-             accessories: Sequence[Accessory] = ()) -> Orders:
+             accessories: Sequence[Accessory] = (), presumed: bool = False) -> Orders:
         """Add a robot; it replaces a closed one of the same name.
 
         :param limits: :class:`Limits` of its type and parameters
         :param brake: see :class:`RobotRule`
         :param accessories: of its type
+        :param presumed: whether its type is only presumed: its limits may rise until it moves
         """
         self._rules[name] = RobotRule(limits, self._command, brake)
         self.accessories.open(name, accessories, now)
         self._type_limits[name] = limits
-        self._driven.lower(name, limits)
+        self._driven.open(name, limits, presumed)
         self._apply(now)
         return self._done()
 
@@ -496,21 +489,25 @@ class Drive:
 
     def kept(self) -> Dict[str, Any]:
         """Return the state for the next drive, as JSON values."""
-        return {'seat': self.lease.kept(), 'settings': list(self.settings), 'mode': self.mode,
+        return {'seat': self.lease.kept(), 'settings': self._settings.kept(), 'mode': self.mode,
                 'driven': self._driven.kept(), 'stop': self.stop_all,
-                'alone': {name: list(whose) for name, whose in self._alone.items()}}
+                'sources': {name: owner.kept() for name, owner in self._owners.items()},
+                'alone': self._alone.kept()}
 
     def _restore(self, kept: Mapping[str, Any], now: float) -> None:
-        """Restore the state of the previous drive: nothing is selected, neutral is required."""
+        """Restore the state of the previous drive: nothing is selected, neutral is required.
+
+        :raises AttributeError, LookupError, TypeError, ValueError: it is malformed
+        """
+        if kept.get('forgotten'):
+            self.lease.forget(now)
         if 'seat' in kept:
             self.lease.restore(kept['seat'], now)
-            # Its next wish does not count as a new holder's, so reserve its sources now: another
-            # node that publishes first must not get them.
-            self._take_sources(now)
-            self.settings = Settings(*kept['settings'])
+            for name in self._owners.keys() & kept['sources'].keys():
+                self._owners[name].restore(kept['sources'][name])
+            self._settings.restore(kept['settings'])
             self._driven.restore(kept['driven'])
-            self._alone = {name: (whose[0], bool(whose[1]))
-                           for name, whose in kept['alone'].items()}
+            self._alone.restore(kept['alone'])
             if kept['mode'] in self._sources:
                 self.arbiter.on_mode(kept['mode'], now)
             self.arbiter.set_limits(*self.settings.limits, now)
@@ -577,8 +574,10 @@ class Drive:
             self._pass_on(self.arbiter.set_limits(*self.settings.limits, now), now)
         self._pass_on(self.arbiter.on_selection(selected, now), now)
         for name, rule in self._rules.items():
+            if name in selected:
+                self._driven.select_one(name, self._type_limits[name])
             rule.limits = self._driven.of(name, self._type_limits[name])
-            self._send(name, rule.stop(self.stop_all, name in self._alone, now))
+            self._send(name, rule.stop(self.stop_all, name in self.alone, now))
             self._send(name, rule.select(name in selected, now))
         self._pass_on(self.arbiter.let_sideways(any(
             rule.selected and rule.limits.holonomic for rule in self._rules.values()), now), now)

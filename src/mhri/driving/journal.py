@@ -35,7 +35,7 @@ from mhri.driving.robot_rule import Brake
 from mhri.driving.settings import Settings
 from mhri.driving.sources import MuxConfig, Source
 
-VERSION = 1
+VERSION = 2
 BEGIN, LEFT = 'begin', 'left'
 _CONNECTED, _BRAKE, _FAILED = 'connected', 'brake', 'failed'
 # Methods that change nothing.
@@ -132,7 +132,7 @@ class JournalDrive(Drive):
 
     def open(self, name: str, limits: Limits, now: float,
              brake: Brake = lambda velocity, _: velocity,
-             accessories: Sequence[Accessory] = ()) -> Orders:
+             accessories: Sequence[Accessory] = (), presumed: bool = False) -> Orders:
         """Add a robot, and record the results of its brake."""
         def asked(velocity: Velocity, at: float) -> Velocity:
             found: Any = None
@@ -144,7 +144,7 @@ class JournalDrive(Drive):
             if isinstance(found, Exception):
                 raise found
             return found  # type: ignore[no-any-return]
-        return super().open(name, limits, now, asked, accessories)
+        return super().open(name, limits, now, asked, accessories, presumed)
 
     def record_event(self, event: Callable[..., Any], args: Sequence[Any],
                      named: Mapping[str, Any]) -> Any:

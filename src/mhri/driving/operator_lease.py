@@ -11,7 +11,8 @@ States and transitions::
 
 Taking control is possible in every state. Only the robots of a valid lease may move. A caller that
 was refused before does not get an empty lease: a script that repeats its selection must not become
-the operator by waiting.
+the operator by waiting. If it was forgotten who that was (:meth:`OperatorLease.forget`), nobody
+gets the lease for RETURN_S, and then only a caller that is alone, or that takes control.
 """
 import math
 from typing import Any, Dict, Iterable, NamedTuple, Optional, Tuple
@@ -58,6 +59,9 @@ class OperatorLease:
         self._lapsed = False
         self._empty_at: Optional[float] = None
         self._refused: Dict[Caller, None] = {}
+        # When the lease may be given again, None unless its past was forgotten; who was heard.
+        self._unsure_until: Optional[float] = None
+        self._heard: Dict[Caller, float] = {}
         self.since: Optional[float] = None
 
     @property
@@ -98,6 +102,8 @@ class OperatorLease:
                     self._holder is not None and not caller.is_successor_of(self._holder):
                 self._refuse(caller)
                 return False
+            if self._holder is None and self._is_unsure(caller, now):
+                return False
             replaced = self._holder
             self.take(caller, now)
             if replaced is not None:
@@ -106,6 +112,15 @@ class OperatorLease:
         self._chosen = tuple(names)[:MAX_ROBOTS]
         self._repeated_at, self._lapsed, self._empty_at = now, False, None
         return True
+
+    def _is_unsure(self, caller: Caller, now: float) -> bool:
+        """Return whether a caller may be one that was refused before that was forgotten."""
+        if self._unsure_until is None:
+            return False
+        self._heard = {one: at for one, at in self._heard.items() if now - at < LEASE_S}
+        if len(self._heard) < MAX_REFUSED:
+            self._heard[caller] = now
+        return now < self._unsure_until or set(self._heard) != {caller}
 
     def _refuse(self, caller: Caller) -> None:
         if caller not in self._refused:
@@ -119,6 +134,7 @@ class OperatorLease:
         self._refused.pop(caller, None)
         self._holder, self._chosen, self._lapsed, self._empty_at = caller, (), False, None
         self._repeated_at = self.since = now
+        self._unsure_until = None
 
     def on_gone(self, caller: Caller, now: float) -> bool:
         """Handle the loss of a publisher of the selection; return whether it was in control.
@@ -155,14 +171,22 @@ class OperatorLease:
     def kept(self) -> Dict[str, Any]:
         """Return the state for the next process, as JSON values."""
         return {'holder': self._holder and list(self._holder), 'since': self.since,
-                'refused': [list(caller) for caller in self._refused]}
+                'refused': [list(caller) for caller in self._refused],
+                'forgotten': self._unsure_until is not None}
 
     def restore(self, kept: Dict[str, Any], now: float) -> None:
         """Restore the state of the previous process: nothing is selected, its holder may return.
 
         :param kept: the result of :meth:`kept`
+        :raises LookupError, TypeError, ValueError: it is malformed
         """
-        self._refused = {_caller(caller): None for caller in kept['refused']}
+        self._refused = {_caller(caller): None for caller in kept['refused'][-MAX_REFUSED:]}
+        if kept['forgotten']:
+            self.forget(now)
         if kept['holder']:
-            self._holder, self.since = _caller(kept['holder']), kept['since']
+            self._holder, self.since = _caller(kept['holder']), min(float(kept['since']), now)
             self._wait_for_holder(now)
+
+    def forget(self, now: float) -> None:
+        """Handle that the state of the previous process is lost."""
+        self._unsure_until = now + RETURN_S

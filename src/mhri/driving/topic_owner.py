@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Selection of one publisher of a topic, and detection of latched messages."""
-from typing import AbstractSet, Callable, Dict, Hashable, Optional, Set
+from typing import AbstractSet, Any, Callable, Dict, Hashable, List, Optional, Sequence, Set
 
 
 class TopicOwner:
@@ -51,6 +51,15 @@ class TopicOwner:
         if caller in connected:
             self._displace(caller)
         return self.owner != before
+
+    def kept(self) -> List[Any]:
+        """Return the state for the next process, as JSON values."""
+        return [self.owner, self._claimed, self._displaced, sorted(self._refused)]
+
+    def restore(self, kept: Sequence[Any]) -> None:
+        """Restore the result of :meth:`kept` of the previous process."""
+        self.owner, self._claimed, self._displaced, refused = kept
+        self._refused = set(refused)
 
     def _displace(self, caller: str) -> None:
         if caller != self.owner:

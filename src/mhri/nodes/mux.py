@@ -15,11 +15,12 @@ import rosgraph
 import rospy
 
 from mhri.base.config import ConfigError
+from mhri.driving.drive import LOST
 from mhri.driving.io.stop_file import StopFile
 from mhri.driving.ros.journal_writer import JournalWriter
-from mhri.driving.ros.mux import KEPT, Mux
+from mhri.driving.ros.mux import Mux
 from mhri.driving.ros.mux_file import read_mux_config, shipped_path
-from mhri.driving.ros.mux_takeover import end_other_muxes, has_address_of_last
+from mhri.driving.ros.mux_takeover import end_other_muxes, has_address_of_last, KEPT
 from mhri.driving.sources import enabling_problem
 from mhri.graph.ros import parameters
 from mhri.graph.ros.master_api import MasterApi, MasterError
@@ -66,7 +67,7 @@ def main():
     restarted: robots must not be left without a drive.
     """
     # Robots that were stopped alone stay stopped even if they are no longer in the list.
-    memory = Memory(fallback={KEPT: {'stop': True}})
+    memory = Memory(fallback={KEPT: LOST})
     undertaker = stand_by('the mux', DRIVE_HUNG_S, memory, always=True)
     try:
         config = read_mux_config(config_path(sys.argv) or shipped_path())

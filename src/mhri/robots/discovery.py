@@ -18,6 +18,9 @@ Parameters = Mapping[str, object]
 Types = Mapping[str, RobotType]
 
 TWIST = 'geometry_msgs/Twist'
+# What the base of a robot publishes, and no multiplexer of velocities; and exceptions.
+_MEASURED = ('nav_msgs/Odometry', 'sensor_msgs/')
+_NOT_MEASURED = ('sensor_msgs/Joy', 'sensor_msgs/JointState')
 ROOT = ''
 # At most one robot has no namespace; this is its name unless /robot_name sets another.
 ROOT_NAME = 'robot'
@@ -68,6 +71,11 @@ def parse_ignore_list(text: str, origin: str) -> IgnoreList:
     return ignore
 
 
+def is_measured(kind: str) -> bool:
+    """Return whether a message type is what only the base of a robot, or its sensor, publishes."""
+    return kind.startswith(_MEASURED) and not kind.startswith(_NOT_MEASURED)
+
+
 def nodes_of(system_state: SystemState) -> List[str]:
     """Return the sorted names of all nodes in a ``getSystemState`` answer of the master."""
     return sorted({node for group in system_state for _, nodes in group for node in nodes})
@@ -109,7 +117,8 @@ def find_candidates(system_state: SystemState, parameters: Parameters, ignore: I
     nor under a known robot, or velocity topics that a node outside of it reads (a simulator). The
     root is a robot, named :func:`root_name`, if it has a ``robot_type`` or velocity topics;
     namespaces without either then count as its parts. A node with several robots (``instance`` of
-    a type) yields each of them.
+    a type) yields each of them. A namespace without a type whose velocity ends at the base of
+    another robot is none (``joy_teleop`` of husky_control): no two robots have one base.
 
     :param system_state: publishers, subscribers, services as the master lists them
     :param parameters: all parameters as one nested dict
@@ -117,11 +126,12 @@ def find_candidates(system_state: SystemState, parameters: Parameters, ignore: I
     :param known: names of the robots already in the list; they are left out
     :param topic_types: pairs (topic, ROS type) as the master lists them
     :param types: {name: RobotType}, used to recognise robots and their velocity topics
-    :param with_parts: include the parts of the robot without a namespace
+    :param with_parts: include the parts of the robot without a namespace, and the namespaces that
+        only command another robot (``seen.input_of``)
     """
     survey = Survey(system_state, parameters, ignore, topic_types, types or {})
     return [item for item in survey.candidates() if not known_by_name(item, known, types or {})
-            and (with_parts or not item.part)]
+            and (with_parts or not (item.part or item.seen.input_of))]
 
 
 def known_by_name(candidate: Candidate, known: Container[str], types: Types) -> bool:
@@ -166,9 +176,18 @@ class Survey:
         self._root_nodes = set(self._members.pop(ROOT, ()))
         #: {place of one robot of a node with several, e.g. ``/turtle2``: (RobotType, its nodes)}
         self.instances = dict(self._find_instances())
+        self._readers = dict(self._velocities(self._subscribers))
+        self._written: Dict[str, List[str]] = {}
+        for topic, nodes in self._velocities(self._publishers):
+            for node in nodes:
+                self._written.setdefault(node, []).append(topic)
         self._commands: Dict[str, List[str]] = {}
         self._listeners: Dict[str, Set[str]] = {}
         self._share_out_commands()
+        # {namespace: the nodes that are its own base}; {namespace that is no robot: the one whose
+        # base it commands}.
+        self._bases: Dict[str, Set[str]] = {}
+        self._inputs = self._find_inputs()
 
     def _ignored(self, name: str) -> bool:
         """Return whether a node or a topic is ignored, by its name or its namespace.
@@ -248,13 +267,73 @@ class Survey:
             return ROOT, name
         return namespace, rest
 
+    def _velocities(self, group: Mapping[str, Sequence[str]]) -> Iterator[Tuple[str, List[str]]]:
+        """Yield (velocity topic, its nodes) of the publishers or the subscribers."""
+        for topic, nodes in group.items():
+            if self._topic_types.get(topic) == TWIST and not self._ignored(topic):
+                yield topic, [node for node in nodes if not self._ignored(node)]
+
+    def _reach(self, namespace: str) -> Tuple[Set[str], Set[str], Set[str]]:
+        """Return where the velocity of a namespace goes: (all nodes, the last ones, topics).
+
+        A node that reads velocity and writes velocity passes it on: a multiplexer, a smoother.
+        """
+        visited: Set[str] = set()
+        ends: Set[str] = set()
+        topics: Set[str] = set()
+        left = list(self._listeners.get(namespace, ()))
+        while left:
+            node = left.pop()
+            if node in visited:
+                continue
+            visited.add(node)
+            written = self._written.get(node, ())
+            topics.update(written)
+            onward = {reader for topic in written
+                      for reader in self._readers.get(topic, ())} - {node}
+            left += sorted(onward)
+            if not onward:
+                ends.add(node)
+        return visited, ends or visited, topics
+
+    def _find_inputs(self) -> Dict[str, str]:
+        """Return {namespace: another one, which has the base that its velocity reaches}."""
+        reach = {name: self._reach(name) for name in self._commands}
+        tells: Dict[str, Set[str]] = {}
+        for topic, nodes in self._publishers.items():
+            if is_measured(self._topic_types.get(topic, '')):
+                tells.setdefault(split(topic)[0], set()).update(nodes)
+        for name, (visited, ends, _) in reach.items():
+            inside = {node for node in ends if split(node)[0] == name}
+            telling = visited & tells.get(name, set()) if name != ROOT else set()
+            self._bases[name] = inside | telling
+        inputs = {}
+        for name, (_, ends, _) in reach.items():
+            if name in self._typed or name == ROOT and 'robot_type' in self._parameters:
+                continue
+            # Not all ends: somebody may merely listen to the velocity of that base.
+            others = [other for other in reach if other != name and ends & self._bases[other]]
+            if others and (not self._bases[name] or others == [ROOT] and self._is_controller(
+                    name, reach[ROOT][2])):
+                inputs[name] = others[0]
+        return inputs
+
+    def _is_controller(self, name: str, reached: Set[str]) -> bool:
+        """Return whether a namespace without nodes lies behind the multiplexer at the root.
+
+        The controller of a robot at the root may have its own namespace, with its odometry.
+        """
+        prefix = '/{}/'.format(name)
+        return name not in self._members and all(
+            self._full(prefix, topic) in reached for topic in self._commands[name])
+
     def candidates(self) -> List[Candidate]:
         """Return every :class:`Candidate`, sorted by name."""
         root = self._root()
         names = set(self._typed) | set(self._commands) | set(self._members)
         names.discard(ROOT)
         parts = set()
-        if root and root.nodes:
+        if root and root.nodes and not root.seen.input_of:
             parts = {name for name in names if name not in self._typed
                      and not (name in self._members and name in self._commands)}
         found = [replace(self._in_namespace(name), part=name in parts) for name in names
@@ -307,9 +386,11 @@ class Survey:
         behind = tuple(topic for topic in sorted(self._commands.get(namespace, ()))
                        if self._is_behind(namespace, self._full(prefix, topic)))
         guard = '/{}/mhri_guard'.format(namespace)
+        owner = self._inputs.get(namespace)
         return Seen(namespace == ROOT, kind, self._likeliest(namespace, prefix), None, behind,
                     tuple(topic for topic in behind
-                          if guard in self._publishers.get(self._full(prefix, topic), ())))
+                          if guard in self._publishers.get(self._full(prefix, topic), ())),
+                    root_name(self._parameters) if owner == ROOT else owner)
 
     @staticmethod
     def _full(prefix: str, topic: str) -> str:
@@ -324,11 +405,18 @@ class Survey:
         # mhri's own nodes are at the root, too, but not part of a robot without a namespace.
         ignored = partial(self._ignore.covers, namespace=namespace) if namespace == ROOT \
             else self._ignored
-        writers = {node for node in self._publishers.get(topic, ())
-                   if split(node)[0] == namespace and not ignored(node)}
-        return bool(writers) and any(
-            self._topic_types.get(other) == TWIST and not writers.isdisjoint(nodes)
-            for other, nodes in self._subscribers.items() if other != topic)
+        writers = {node for node in self._publishers.get(topic, ()) if not ignored(node)}
+        # A node outside of it may follow the velocity of another robot.
+        return any(
+            split(node)[0] == namespace or not self._belongs_to_another(other, namespace)
+            for other, nodes in self._readers.items() if other != topic
+            for node in writers.intersection(nodes))
+
+    def _belongs_to_another(self, topic: str, namespace: str) -> bool:
+        """Return whether a topic commands a robot of another namespace, with a base of its own."""
+        return any(topic in (self._full('/{}/'.format(name), one) for one in topics)
+                   for name, topics in self._commands.items()
+                   if name not in (namespace, ROOT) and self._bases.get(name))
 
     def _published(self, topic: str, kind: str) -> bool:
         return topic in self._publishers and self._topic_types.get(topic) == kind
@@ -343,8 +431,8 @@ class Survey:
 
         def rank(topic: str) -> Tuple[bool, int, bool, int]:
             """Return a tuple: the smaller, the likelier."""
-            full = topic if topic.startswith('/') else prefix + topic
-            inside = namespace != ROOT and any(
+            full = self._full(prefix, topic)
+            inside = self._is_behind(namespace, full) or namespace != ROOT and any(
                 split(node)[0] == namespace and not self._ignored(node)
                 for node in self._publishers.get(full, ()))
             return (inside, usual.index(topic) if topic in usual else len(usual),

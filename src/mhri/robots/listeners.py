@@ -17,7 +17,8 @@ def guard_node(robot: str) -> str:
     return '/{}/mhri_guard'.format(robot)
 
 
-def obeying(robot: str, listeners: Sequence[Collection[str]]) -> List[FrozenSet[str]]:
+def obeying(robot: str, listeners: Sequence[Collection[str]],
+            behind: Sequence[bool] = ()) -> List[FrozenSet[str]]:
     """Return the listeners of each topic that count as the robot.
 
     These are the nodes below the robot's namespace. If none of them subscribes any of the topics
@@ -25,12 +26,15 @@ def obeying(robot: str, listeners: Sequence[Collection[str]]) -> List[FrozenSet[
 
     :param robot: its name
     :param listeners: for each topic the caller ids of its subscribers, a set
+    :param behind: for each topic, whether it lies behind a multiplexer, which may run elsewhere
+        though the base does not: those topics count by themselves. Default: none does
     """
-    own = '/{}/'.format(robot)
+    own, behind = '/{}/'.format(robot), behind or (False,) * len(listeners)
     inside = [frozenset(name for name in names if name.startswith(own)) for names in listeners]
-    if any(inside):
-        return inside
-    return [frozenset(name for name in names if not _TOOLS.match(name)) for names in listeners]
+    has_own = {is_behind for names, is_behind in zip(inside, behind) if names}
+    return [own_names if is_behind in has_own else frozenset(
+        name for name in names if not _TOOLS.match(name))
+        for own_names, names, is_behind in zip(inside, listeners, behind)]
 
 
 def first_obeying(robot: str, listeners: Sequence[Collection[str]]) -> Optional[int]:

@@ -41,6 +41,9 @@ def robot_view(heard: Mapping[str, Any], driven: Any = None, answers: bool = Tru
         if live:
             fields['note'] = (warning.sentence if warning else '') or fields.get('note', '') or \
                 _calm_note(driven, fields['brake'])
+        if driven.stands == reasons.UNREACHABLE:  # heard or not, only the operator can change that
+            reason = Reason(driven.stands)
+            fields['note'] = '{}: {}'.format(reason.what, problem) if problem else reason.sentence
         fields['slow'] = fields.get('slow', False) or bool(warning) or fields['brake'].holds
         _add_stops(fields, ours.get('selected', False))
     if control is not None and control.linked and live:

@@ -1,7 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Detects two computers under one robot name, which would both be driven at once."""
-from typing import Collection, Dict, Iterable, Mapping, Optional, Set
+from typing import Collection, Dict, Iterable, Mapping, Optional, Set, Tuple
+
+from mhri.robots.discovery import is_measured
 
 # Two guards are detected within this time [s]: each echoes ten times a second.
 TURNS_S = 2.0
@@ -25,6 +27,19 @@ def twins(odometry: Iterable[Mapping[str, str]], listeners: Mapping[str, str]) -
             if len(found) > 1:
                 return found
     return set()
+
+
+def twins_on_graph(robot: str, published: Iterable[Tuple[str, Iterable[str]]],
+                   kinds: Mapping[str, str], nodes: Collection[str]) -> Set[str]:
+    """Return the nodes that are a robot each, found without its odometry; empty for at most one.
+
+    :param published: (topic, its publishers) of the whole graph
+    :param kinds: {topic: ROS type}
+    :param nodes: the nodes that read its velocity
+    """
+    return twins(({name: name for name in names} for topic, names in published
+                  if topic.startswith('/{}/'.format(robot)) and is_measured(kinds.get(topic, ''))),
+                 {name: name for name in nodes})
 
 
 class GuardTurns:

@@ -45,9 +45,9 @@ class Handover(unittest.TestCase):
 
     def mux(self, *arguments):
         """Start a mux and wait until it hears and is heard."""
-        # What an argument has set stays at the master, and a stop in its file.
+        # What an argument or a mux has set stays at the master, and a stop in its file.
         for name in filter(rospy.has_param, ('/mux/' + key for key in (
-                'config', 'enabling', 'automatic_switching', 'dead_man'))):
+                'config', 'enabling', 'automatic_switching', 'dead_man', 'kept'))):
             rospy.delete_param(name)
         self.stop_file.keep(False)
         self.process = start_mux('__name:=mux', *arguments)

@@ -215,10 +215,15 @@ class OtherCommandersTest(DriveCase):
         self.unreadable(name, receiver, Other, 'a:1:token', Other._md5sum)
 
     def test_two_computers_of_one_name_are_not_driven(self):
-        name, _, receiver, _ = self.robot()
+        for odometry, *sign in (['odom'], ['another', '--sign', 'imu', 'sensor_msgs/Imu']):
+            self.two_of_one_name(odometry, sign)
+
+    def two_of_one_name(self, odometry, sign):
+        """Drive a robot, and start another one of its name, perhaps with another odometry."""
+        name, _, receiver, _ = self.robot('cmd_vel', 'odom', *sign)
         self.drive(receiver, 0.25)
         when = time.monotonic()
-        other = self.process('plain_robot.py', name, 'cmd_vel', 'odom', '__name:=base_too')
+        other = self.process('plain_robot.py', name, 'cmd_vel', odometry, *sign, '__name:=base_too')
         self.wait_robot(name, lambda robot: robot.stands == 'two_robots', 'both to be seen')
         wait_for(lambda: ZERO in [entry[1:] for entry in receiver.after(when)], what='the zero')
         self.kept_standing(name, receiver, 'two_robots')
@@ -241,6 +246,33 @@ class OtherCommandersTest(DriveCase):
         when = time.monotonic()
         self.assertEqual(self.drive(joy, 0.25), (0.25, 0.0))
         self.assertLessEqual({entry[1:] for entry in receiver.after(when)}, {ZERO})
+
+    def test_what_commands_the_base_of_another_robot_is_no_robot(self):
+        """The namespace of a pad, whose multiplexer has no namespace, as in husky_control."""
+        name, _, receiver, _ = self.robot()
+        self.assertEqual(self.drive(receiver, 0.25), (0.25, 0.0))
+        pad, way = self.new_name(), '/{}/joy_vel'.format(name)
+        self.process('own_mux.py', '', *('/{}/cmd_vel'.format(one) for one in (name, pad)), way)
+        self.wait_robot(name, lambda robot: robot.topic == way, 'the input')
+        self.ready(name)
+        when = time.monotonic()
+        self.hold(1.0)
+        self.assertLessEqual({entry[1:] for entry in receiver.after(when)}, {ZERO}, 'past it')
+        self.select_anew(pad)
+        self.wait_robot(pad, lambda robot: robot.selected and robot.stands == 'unreachable', 'it')
+        self.assertEqual(self.state.robot(pad).topic, '')
+
+    def test_a_guard_of_another_version_that_hangs_is_not_driven_past(self):
+        name, _, receiver, _ = self.robot()
+        self.assertEqual(self.drive(receiver, 0.25), (0.25, 0.0))
+        echo = rospy.Publisher('/{}/mhri_guard/echo'.format(name), TwistStamped, queue_size=1)
+        message = TwistStamped()
+        message.header.frame_id = 'a:1:token:more'
+        wait_for(echo.get_num_connections, what='the mux')
+        echo.publish(message)
+        self.kept_standing(name, receiver, 'guard_version', seconds=2.5)
+        echo.unregister()
+        self.drives_again(name, receiver)
 
     def test_an_input_of_its_multiplexer_counts(self):
         """What wins there are zeros on the better input, as long as anybody uses the other."""

@@ -68,15 +68,18 @@ class WishTest(DriveCase):
         self.script('-r', '10', robots=[self.ours, self.other], settings=[FAST], mode='pedal')
         self.refused()
         self.pushed(SLOW_MPS)
-        self.kill()
-        self.pushed(SLOW_MPS)
-        said = self.state.message
-        self.assertEqual((said.operator, said.mode), (rospy.get_name(), 'joy'))
-        self.assertAlmostEqual(said.settings.linear_mps, SLOW_MPS, 6)
+        for kill in (self.kill, self.kill_both):
+            kill()
+            self.pushed(SLOW_MPS)
+            said = self.state.message
+            self.assertEqual((said.operator, said.mode), (rospy.get_name(), 'joy'))
+            self.assertAlmostEqual(said.settings.linear_mps, SLOW_MPS, 6)
         self.empty_seat()
-        self.kill()
-        self.refused()
-        self.assertEqual(self.state.message.operator, '')
+        for kill in (self.kill, self.kill_both):
+            kill()
+            self.refused()
+            self.assertEqual(self.state.message.operator, '')
+            self.assertAlmostEqual(self.state.message.settings.linear_mps, SLOW_MPS, 6)
         self.assertLessEqual(max(mps for _, mps, _ in self.end.after(self.begun)), MAX_MPS)
         self.assertFalse([entry for entry in self.other_end.received if any(entry[1:])])
 
@@ -88,6 +91,19 @@ class WishTest(DriveCase):
         self.assertAlmostEqual(self.state.message.settings.linear_mps, SLOW_MPS, 6)
         self.script('-r', '2', robots=[self.other], name='present')
         self.state.wait(lambda state: state.operator == '/present', 'the seat')
+
+    def test_a_limit_that_rises_before_the_robot_has_moved_does_not_count_either(self):
+        name, topic = self.new_name(), '/{}/cmd_vel'
+        rospy.set_param('/{}/mhri'.format(name), {'limits': {'linear_mps': 0.1}})
+        self.end = VelocityEnd(topic.format(name))
+        self.operator.set(1.0, 1.0)
+        self.select_anew(name)
+        self.ready(name)
+        rospy.delete_param('/{}/mhri'.format(name))
+        self.wait_robot(name, lambda robot: robot.stands == 'limit_raised', 'the sign')
+        self.ours = name
+        self.pushed(0.1)
+        self.assertLessEqual(max(entry[1] for entry in self.end.received), 0.1)
 
     def test_a_limit_that_rises_counts_once_the_robot_is_selected_anew(self):
         self.operator.set(1.0, 1.0)

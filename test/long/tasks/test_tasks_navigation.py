@@ -13,7 +13,7 @@ from mhri.msg import TaskState
 from support.graph import navigation
 from support.node_tools import measured, moves, Process
 from support.own_node import own_node
-from support.ros_system import processes_with, wait_for
+from support.ros_system import freeze, processes_with, wait_for
 from support.tasks_case import NavigationCase, TIMEOUT_S
 
 system = own_node('tasks_navigation', '../../e2e/tasks/tasks.launch')
@@ -85,6 +85,20 @@ class TasksNavigation(NavigationCase):
     def test_a_robot_stands_when_mhri_tasks_hangs(self):
         measured('mhri_tasks hangs: drove on for', self.drives_on_for(
             psutil.Process.suspend), 3.0)
+
+    def test_a_robot_stands_when_mhri_tasks_hangs_and_what_stands_by(self):
+        goal, hung = self.sent(), processes_with('__name:=mhri_tasks')
+        try:
+            freeze(*[process.pid for process in hung])
+            since = time.monotonic()
+            self.rests_for_good(since)
+            measured('both hang: drove on for', max(
+                item.at for item in self.commands['bot3'].since(since - 1.0)
+                if moves(item.value)) - since, 3.0)
+        finally:
+            for process in hung:
+                process.resume()
+        self.ends(goal)
 
     def test_a_goal_ends_when_the_drive_service_is_started_anew(self):
         mux = processes_with('__name:=mux')[-1]

@@ -92,5 +92,5 @@ def test_a_line_that_replaces_another_takes_over_its_connections(monkeypatch, li
         raise RuntimeError('the master is gone')
     monkeypatch.setattr(module, 'RobotLine', open_line)
     with pytest.raises(RuntimeError):
-        lines._open('bot2', None)
+        lines._open('bot2', None, False)
     assert (len(new), old.sent, old.rule) == (1, [ZERO, 'end', 'close'], None)

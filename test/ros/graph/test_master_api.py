@@ -92,7 +92,7 @@ def test_roster_and_in_force_go_on_asking(master, monkeypatch, kind):
     rospy.rostime.set_rostime_initialized(True)
     monkeypatch.setattr('mhri.driving.ros.known_robots.PERIOD_S', 0.02)
     known = KnownRobots({}, lambda *_: None, lambda name: None, lambda: 5, Memory(), dict,
-                        lambda *_: None, dict).start()
+                        lambda *_: None, dict, lambda *_: None, dict).start()
     owner = ServiceOwner('/service').start()
     try:
         for _ in range(3):

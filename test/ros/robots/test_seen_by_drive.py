@@ -124,3 +124,11 @@ def test_what_this_robot_does_not_have_is_not_shown(optional, stands, shown):
     row = AccessoryView(Accessory('gripper', key='gripper', optional=optional))
     found = robot_view(view(accessories=(row,)), drive(accessories=states)).accessories
     assert [one.stands for one in found] == ([stands or ''] if shown else [])
+
+
+@pytest.mark.parametrize('link', ['live', 'waiting'])
+def test_what_keeps_a_robot_from_ever_being_driven_is_said_also_of_one_not_heard(link):
+    said = drive(stands=RobotDrive.UNREACHABLE, obeys=RobotDrive.NOBODY)
+    before = dict(view(), link=link, note='' if link == 'live' else 'nothing heard yet')
+    assert robot_view(before, said, problem='select husky').note.endswith(': select husky')
+    assert 'multiplexer' in robot_view(before, said).note

@@ -10,7 +10,7 @@ from mhri.base.limits import Velocity, ZERO
 from mhri.base.robot_types import Limits
 from mhri.base.sleep_detector import DEAF_S, SLEPT_S
 from mhri.devices.profile import Axis, NEXT_ROBOT, Profile, STOP_ALL
-from mhri.driving.drive import Drive
+from mhri.driving.drive import Drive, LOST
 from mhri.driving.operator_lease import Caller, LAPSED, LEASE_S, MAX_ROBOTS, RETURN_S
 from mhri.driving.settings import Settings
 from mhri.driving.sources import MuxConfig, Source
@@ -493,6 +493,44 @@ def test_what_the_next_drive_knows():
     after.stick(NEUTRAL, 'pad')
     after.stick(FORWARD, 'pad')
     assert after.sent['bot1'] == Velocity(0.2, 0.0) and not moves(after, 'bot2')
+
+
+def test_a_publisher_of_a_source_that_was_refused_is_refused_by_the_next_drive():
+    rig = driving('bot1')
+    rig.stick(FORWARD, who='/stranger')
+    kept = json.loads(json.dumps(rig.drive.kept()))
+    after = Rig(kept, now=rig.now + 1.0)
+    after.stick(NEUTRAL, who='/stranger')
+    after.wish('bot1')
+    for axes in (NEUTRAL, FORWARD):
+        after.stick(axes, who='/stranger')
+    assert not moves(after), 'it speaks first, and says neutral'
+    for axes in (NEUTRAL, FORWARD):
+        after.stick(axes)
+    assert after.sent['bot1'] == GO
+
+
+def test_a_drive_whose_memory_is_lost_stands_and_gives_the_seat_to_one_who_takes_it():
+    after = Rig(dict(LOST))
+    for _ in range(5):
+        for who in (A, B):
+            after.wish('bot1', who=who)
+        after.run(1.0)
+    assert after.drive.stop_all and after.drive.lease.holder is None
+    after.note(after.drive.on_take(A, after.now))
+    assert after.drive.lease.holder == A
+
+
+@pytest.mark.parametrize('change', [
+    {'seat': 5}, {'seat': {}}, {'settings': [[99.0, 1.0], []]},
+    {'settings': [['fast', 1.0], []]}, {'settings': [[float('nan'), 1.0], []]},
+    {'settings': [[0.5, 1.0], [['/a', [99.0, 1.0]]]]},
+    {'driven': {'bot1': [1.0]}}, {'alone': ['bot1']},
+    {'alone': {'bot1': []}}, {'sources': None}, {'sources': {'joy': 'x'}}, {'mode': []}])
+def test_a_malformed_memory_is_refused(change):
+    kept = dict(json.loads(json.dumps(driving('bot1').drive.kept())), **change)
+    with pytest.raises((AttributeError, LookupError, TypeError, ValueError)):
+        Drive(CONFIG, 0.0, kept)
 
 
 def test_a_seat_whose_holder_did_not_come_back_is_empty_and_the_settings_stay():

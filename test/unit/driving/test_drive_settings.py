@@ -1,12 +1,15 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """How fast the drive lets robots go: the operator's settings, the link, and limits that change."""
+import json
+
 import pytest
 from test_drive import A, B, driving, FORWARD, GO, NEUTRAL, Rig, SLOW
 
 from mhri.base.limits import Velocity
 from mhri.base.robot_types import Limits
-from mhri.driving.operator_lease import RETURN_S
+from mhri.driving.operator_lease import Caller, RETURN_S
+from mhri.driving.settings import Settings
 from mhri.robots.link_quality import link_share
 
 
@@ -22,6 +25,36 @@ def test_settings_that_cannot_be_leave_all_as_it_is(bad):
     assert not rig.wish('bot1', settings=[SLOW._replace(linear_mps=5.0, angular_rad_s=10.0)])
     assert not rig.wish('bot1', settings=[SLOW])
     assert rig.sent['bot1'] == Velocity(0.2, 0.0), 'a moving robot follows at once'
+
+
+@pytest.mark.parametrize('took, restarted', [(True, False), (False, False), (True, True)])
+def test_who_gets_control_back_has_nothing_less_safe_than_before(took, restarted):
+    rig = driving('bot1')
+    rig.wish('bot1', settings=[SLOW])
+    rig.note(rig.drive.on_take(B, rig.now))
+    assert rig.drive.settings == SLOW, 'those in force stay'
+    rig.wish('bot1', who=B, settings=[Settings(5.0, 0.5, False, True, False)])
+    if restarted:
+        rig = Rig(json.loads(json.dumps(rig.drive.kept())), now=rig.now)
+    if took:
+        rig.note(rig.drive.on_take(A, rig.now))
+    else:
+        rig.note(rig.drive.on_gone(B, rig.now))
+        rig.there = [A]
+        rig.run(RETURN_S + 0.1)
+        rig.wish('bot1')
+    assert rig.drive.lease.holder == A
+    assert rig.drive.settings == Settings(0.2, 0.5, False, True, True)
+    rig.wish('bot1', settings=[Settings(0.3, 1.0)])
+    assert rig.drive.settings.linear_mps == 0.3, 'what the operator says counts'
+
+
+def test_the_settings_of_operators_are_bounded():
+    rig = driving('bot1')
+    for number in range(200):
+        rig.note(rig.drive.on_take(Caller('/x{}'.format(number)), rig.now))
+        rig.wish('bot1', who=Caller('/x{}'.format(number)))
+    assert len(rig.drive.kept()['settings'][1]) == 64
 
 
 def test_the_selected_robots_keep_together_and_slow_down_for_a_link():
@@ -49,13 +82,33 @@ def test_the_selected_robots_keep_together_and_slow_down_for_a_link():
     assert rig.drive.share == 1.0, 'nothing is known of that link'
 
 
-def test_a_limit_that_rises_counts_at_once_for_a_robot_that_was_not_driven():
+@pytest.mark.parametrize('selected, presumed, held', [
+    (False, False, False), (True, False, True), (True, True, False)])
+def test_a_limit_that_rises_counts_at_once_only_for_one_not_selected_or_of_unknown_type(
+        selected, presumed, held):
     rig = Rig()
+    rig.note(rig.drive.open('bot1', Limits(0.1, 1.0), rig.now, presumed=presumed))
+    rig.wish(*['bot1'] if selected else [])
+    rig.run(0.1)
+    rig.note(rig.drive.open('bot1', Limits(0.5, 1.0), rig.now))
+    assert rig.drive.stop_reason('bot1') == ('limit_raised' if held else '')
+    rig.wish('bot1', mode='joy')
+    for axes in (NEUTRAL, FORWARD):
+        rig.stick(axes)
+    assert rig.sent['bot1'].linear_mps == (0.1 if held else 0.5)
+
+
+def test_a_robot_of_unknown_type_that_moves_keeps_its_limits():
+    rig = Rig()
+    rig.note(rig.drive.open('bot1', Limits(0.1, 1.0), rig.now, presumed=True))
     rig.wish('bot1')
-    for limit_mps in (0.3, 0.5):
-        rig.run(0.1)
-        rig.note(rig.drive.open('bot1', Limits(limit_mps, 1.0), rig.now))
-    assert rig.drive.stop_reason('bot1') == ''
+    for axes in (NEUTRAL, FORWARD):
+        rig.stick(axes)
+    rig.run(0.1)
+    rig.note(rig.drive.open('bot1', Limits(0.5, 1.0), rig.now))
+    for axes in (NEUTRAL, FORWARD):
+        rig.stick(axes)
+    assert rig.sent['bot1'].linear_mps == 0.1 and rig.drive.stop_reason('bot1') == 'limit_raised'
 
 
 def test_a_limit_that_falls_is_kept_at_once_also_where_the_stick_is_let_go_just_then():

@@ -152,11 +152,11 @@ def test_what_was_asked_and_failed_is_told_again(noted):
     assert replay(noted.lines)[1:4] == (len(noted.lines) - 1, 0, '')
 
 
-def test_the_next_drive_knows_what_was_kept_and_whom_it_asked(noted):
+def test_the_next_drive_knows_what_was_kept(noted):
     made = driven(noted)
     made.on_stop(0.4)
     noted.drive(CONFIG, 1.0, made.kept(), connected=lambda source: {'/panel'})
-    assert '"connected"' in noted.lines[-1]
+    assert '"stop":true' in noted.lines[-1]
     assert replay(noted.lines)[:2] == (2, len(noted.lines) - 2)
 
 
@@ -172,7 +172,7 @@ def test_half_a_line_is_the_end_of_a_drive(noted):
 
 
 @pytest.mark.parametrize('line', [
-    '["run1","begin",{"version":2},[]]', '["run1","begin",7]',
+    '["run1","begin",{"version":1},[]]', '["run1","begin",7]',
     '["run1","tick",[0.1],{},[],[],false]',
     '{"a": 1}\n["run1","tick",[0.1],{},[],[],false]'])
 def test_what_is_no_journal_of_this_version_is_refused(line):

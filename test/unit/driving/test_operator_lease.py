@@ -127,6 +127,45 @@ def test_the_next_process_knows_who_had_the_seat_and_who_was_refused():
     assert after.on_selection(A, ['bot1'], 24.1)
 
 
+def test_a_lease_whose_past_is_lost_is_given_to_nobody_and_then_to_one_that_is_alone():
+    seat = OperatorLease()
+    seat.forget(0.0)
+    for now in (0.1, 1.0, RETURN_S - 0.1):
+        assert not seat.on_selection(A, ['bot1'], now)
+    assert seat.on_selection(A, ['bot1'], RETURN_S) and seat.selected == ('bot1',)
+    assert not seat.on_selection(B, [], RETURN_S)
+
+
+def test_of_several_only_one_that_takes_control_gets_a_lease_whose_past_is_lost():
+    before = OperatorLease()
+    before.forget(0.0)
+    seat = OperatorLease()
+    seat.restore(json.loads(json.dumps(before.kept())), 1.0)
+    for second in range(1, 10):
+        assert not seat.on_selection(A, ['bot1'], 1.0 + second)
+        assert not seat.on_selection(B, ['bot1'], 1.1 + second)
+    seat.take(A, 11.0)
+    assert seat.on_selection(A, ['bot1'], 11.1) and not seat.on_selection(B, ['bot1'], 11.2)
+    assert not seat.kept()['forgotten']
+
+
+def test_a_lease_whose_past_is_lost_goes_to_the_one_that_is_left():
+    seat = OperatorLease()
+    seat.forget(0.0)
+    for now in (2.0, RETURN_S):
+        assert not seat.on_selection(B, [], now - 0.1)
+        assert not seat.on_selection(A, [], now)
+    assert not seat.on_selection(A, [], RETURN_S + LEASE_S - 0.2)
+    assert seat.on_selection(A, [], RETURN_S + LEASE_S - 0.1)
+
+
+def test_what_was_kept_before_the_clock_began_anew_is_not_in_the_future():
+    kept = dict(OperatorLease().kept(), holder=list(A), since=1e6)
+    seat = OperatorLease()
+    seat.restore(kept, 5.0)
+    assert seat.since == 5.0
+
+
 def test_what_is_kept_is_bounded():
     seat = seat_in(LEASED)
     seat.on_selection(A, ['bot{}'.format(number) for number in range(20000)], 0.1)

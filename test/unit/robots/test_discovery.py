@@ -7,7 +7,7 @@ import os
 import pytest
 
 from mhri.base.config import ConfigError
-from mhri.base.robot_types import load_robot_types, Seen
+from mhri.base.robot_types import load_robot_types, resolve_robot_type, Seen
 from mhri.robots.discovery import (
     Candidate, find_candidates, IgnoreList, named_instances, parameters_of, parse_ignore_list,
     TWIST)
@@ -130,6 +130,19 @@ TB2 = ('/cmd_vel_mux reads /cmd_vel_mux/input/teleop', '/cmd_vel_mux reads /cmd_
        '/mobile_base writes /odom nav_msgs/Odometry',
        '/camera/driver writes /camera/rgb/image_raw sensor_msgs/Image')
 
+HUSKY = ('/joy_teleop/joy_node writes /joy_teleop/joy sensor_msgs/Joy',
+         '/joy_teleop/teleop_twist_joy reads /joy_teleop/joy sensor_msgs/Joy',
+         '/joy_teleop/teleop_twist_joy writes /joy_teleop/cmd_vel',
+         '/twist_marker_server writes /twist_marker_server/cmd_vel',
+         '/twist_mux reads /joy_teleop/cmd_vel', '/twist_mux reads /twist_marker_server/cmd_vel',
+         '/twist_mux reads /joy_teleop/lock std_msgs/Bool',
+         '/twist_mux writes /joy_teleop/active std_msgs/String',
+         '/watcher reads /joy_teleop/active std_msgs/String',
+         '/twist_mux reads /cmd_vel', '/twist_mux writes /husky_velocity_controller/cmd_vel',
+         '/husky_node reads /husky_velocity_controller/cmd_vel',
+         '/husky_node writes /husky_velocity_controller/odom nav_msgs/Odometry')
+HUSKY_SEEN = Seen(True, None, 'cmd_vel')
+
 # Name, robot_type and Seen of what is offered; None for Seen: it has a problem.
 GRAPHS = {
     'turtlebot3_at_the_root': (TB3, {}, [('robot', None, Seen(True, 'turtlebot3', 'cmd_vel'))]),
@@ -171,7 +184,22 @@ GRAPHS = {
         [('b', None, Seen(False, None, 'cmd_vel'))]),
     'beside_somebody_elses_multiplexer': (
         ('/lab/mux reads /lab/joy', '/lab/mux writes /b/cmd_vel', '/b/base reads /b/cmd_vel'), {},
-        [('b', None, Seen(False, None, 'cmd_vel')), ('lab', None, Seen(False, None, 'joy'))]),
+        [('b', None, Seen(False, None, 'cmd_vel', None, ('cmd_vel',)))]),
+    'behind_a_multiplexer_outside_of_it': (
+        ('/mux_of_b reads /b/input', '/mux_of_b reads /pad/cmd_vel', '/mux_of_b writes /b/cmd_vel',
+         '/b/base reads /b/cmd_vel'), {},
+        [('b', None, Seen(False, None, 'input', None, ('cmd_vel',)))]),
+    'beside_one_that_follows_another_robot': (
+        ('/a/base reads /a/cmd_vel', '/follower reads /a/cmd_vel', '/follower writes /b/cmd_vel',
+         '/b/base reads /b/cmd_vel'), {},
+        [('a', None, Seen(False, None, 'cmd_vel')), ('b', None, Seen(False, None, 'cmd_vel'))]),
+    'beside_one_that_follows_the_speed_of_another_robot': (
+        ('/a/base reads /a/cmd_vel', '/a/base writes /a/speed',
+         '/a/base writes /a/odom nav_msgs/Odometry', '/b/follower reads /a/speed',
+         '/b/follower writes /b/cmd_vel',
+         '/b/base reads /b/cmd_vel'), {},
+        [('a', None, Seen(False, None, 'cmd_vel', None, ('speed',))),
+         ('b', None, Seen(False, None, 'cmd_vel', None, ('cmd_vel',)))]),
     'one_is_the_likeliest': (('/b/x reads /b/aux', '/b/y reads /b/base_cmd_vel'), {}, [
         ('b', None, Seen(False, None, 'base_cmd_vel'))]),
     'no_twist': (('/base reads /cmd_vel std_msgs/String',), {}, []),
@@ -190,6 +218,47 @@ GRAPHS = {
         ('/lab/bot1/base reads /lab/bot1/cmd_vel', '/lab/bot2/base reads /lab/bot2/cmd_vel'),
         {'lab': {'bot1': {'robot_type': 'turtlebot3'}, 'bot2': {'robot_type': 'turtlebot3'}}},
         [('lab/bot1', None, None), ('lab/bot2', None, None)]),
+    'husky_control': (HUSKY, {}, [('robot', None, HUSKY_SEEN)]),
+    'husky_control_of_a_name_and_a_type': (
+        HUSKY, {'robot_type': 'generic', 'robot_name': 'husky'},
+        [('husky', 'generic', HUSKY_SEEN)]),
+    'husky_control_in_gazebo_beside_others': (
+        tuple(line.replace('/husky_node', '/gazebo') for line in HUSKY) + (
+            '/tb3/state_publisher writes /tf tf2_msgs/TFMessage',
+            '/gazebo reads /tb3/cmd_vel', '/gazebo writes /tb3/odom nav_msgs/Odometry'), {},
+        [('robot', None, HUSKY_SEEN), ('tb3', None, Seen(False, None, 'cmd_vel'))]),
+    'husky_control_without_an_external_input': (
+        tuple(line for line in HUSKY if line != '/twist_mux reads /cmd_vel'), {},
+        [('husky_velocity_controller', None, Seen(False, None, 'cmd_vel', None, ('cmd_vel',)))]),
+    'a_pad_of_a_robot_with_a_namespace': (
+        ('/bluetooth_teleop/teleop writes /bluetooth_teleop/cmd_vel',
+         '/twist_mux reads /bluetooth_teleop/cmd_vel', '/twist_mux writes /jackal/cmd_vel',
+         '/jackal/base reads /jackal/cmd_vel'), {'jackal': {'robot_type': 'generic'}},
+        [('jackal', 'generic', Seen(False, None, 'cmd_vel', None, ('cmd_vel',)))]),
+    'a_pad_of_a_robot_to_which_somebody_listens': (
+        ('/twist_mux reads /pad/cmd_vel', '/twist_mux writes /b/cmd_vel',
+         '/b/base reads /b/cmd_vel', '/logger reads /b/cmd_vel', '/logger reads /pad/cmd_vel'), {},
+        [('b', None, Seen(False, None, 'cmd_vel', None, ('cmd_vel',)))]),
+    'a_pad_that_the_base_itself_listens_to': (
+        ('/handle/joy writes /handle/joy sensor_msgs/Joy', '/handle/teleop writes /handle/cmd_vel',
+         '/base reads /handle/cmd_vel', '/base reads /cmd_vel',
+         '/base writes /odom nav_msgs/Odometry'), {},
+        [('robot', None, Seen(True, None, 'cmd_vel'))]),
+    'one_that_says_it_is_a_robot_though_another_has_its_base': (
+        ('/b/base reads /b/cmd_vel', '/a/mux reads /a/cmd_vel', '/a/mux writes /b/cmd_vel'),
+        {'a': {'robot_type': 'generic'}},
+        [('a', 'generic', Seen(False, None, 'cmd_vel')),
+         ('b', None, Seen(False, None, 'cmd_vel', None, ('cmd_vel',)))]),
+    'a_root_that_commands_a_robot_with_a_namespace': (
+        ('/twist_mux reads /cmd_vel', '/twist_mux writes /b/cmd_vel', '/b/base reads /b/cmd_vel'),
+        {}, [('b', None, Seen(False, None, 'cmd_vel', None, ('cmd_vel',)))]),
+    'robots_of_one_simulator': (
+        ('/stage reads /a/cmd_vel', '/stage reads /b/cmd_vel',
+         '/stage writes /a/odom nav_msgs/Odometry', '/stage writes /b/odom nav_msgs/Odometry'), {},
+        [('a', None, Seen(False, None, 'cmd_vel')), ('b', None, Seen(False, None, 'cmd_vel'))]),
+    'robots_of_one_simulator_that_tells_nothing': (
+        ('/sim reads /a/cmd_vel', '/sim reads /b/cmd_vel'), {},
+        [('a', None, Seen(False, None, 'cmd_vel')), ('b', None, Seen(False, None, 'cmd_vel'))]),
     'a_node_with_a_parameter_of_that_name': (
         ('/bot1/base reads /bot1/cmd_vel',), {'bot1': {'base': {'robot_type': 'x'}}},
         [('bot1', None, Seen(False, None, 'cmd_vel'))]),
@@ -251,3 +320,20 @@ def test_parameters_of_a_robot(at_root, expected):
                   'mhri': {'robots': ['robot']}, 'robot': {'mhri': {'label': 'Lab'}}}
     assert parameters_of('robot', parameters, at_root) == expected
     assert parameters_of('other', {'other': 3}) == {}
+
+
+@pytest.mark.parametrize('lines, name, owner', [
+    (HUSKY, 'joy_teleop', 'robot'), (HUSKY, 'husky_velocity_controller', 'robot'),
+    (HUSKY, 'twist_marker_server', 'robot'),
+    (('/twist_mux reads /cmd_vel', '/twist_mux writes /b/cmd_vel', '/b/base reads /b/cmd_vel'),
+     'robot', 'b')])
+def test_what_only_commands_another_robot_is_never_driven(lines, name, owner):
+    """Not offered, and held still where an operator types its name."""
+    groups, kinds = graph(*lines)
+    parts = find_candidates(groups, {}, SHIPPED_IGNORE, (), kinds, TYPES, with_parts=True)
+    seen, = [item.seen for item in parts if item.name == name]
+    assert seen.input_of == owner
+    kind, errors = resolve_robot_type(TYPES, name, {}, seen)
+    assert kind.is_behind and owner in str(errors[0])
+    kind, errors = resolve_robot_type(TYPES, name, {'mhri': {'command': ['chosen']}}, seen)
+    assert not kind.is_behind and not errors

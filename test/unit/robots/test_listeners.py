@@ -3,7 +3,7 @@
 """Which topic a robot's commands go to, whoever else listens; who else commands it."""
 import pytest
 
-from mhri.robots.listeners import first_obeying, other_commanders
+from mhri.robots.listeners import first_obeying, obeying, other_commanders
 
 
 @pytest.mark.parametrize('listeners, chosen', [
@@ -21,6 +21,12 @@ from mhri.robots.listeners import first_obeying, other_commanders
 ], ids=str)
 def test_the_first_topic_that_the_robot_listens_to(listeners, chosen):
     assert first_obeying('bot1', listeners) == chosen
+
+
+def test_a_multiplexer_outside_of_the_robot_counts_before_its_base():
+    listeners = [{'/twist_mux', '/rostopic_1'}, {'/bot1/base', '/logger'}]
+    assert obeying('bot1', listeners) == [frozenset(), {'/bot1/base'}]
+    assert obeying('bot1', listeners, [False, True]) == [{'/twist_mux'}, {'/bot1/base'}]
 
 
 IN, OUT, NAVI = '/bot1/teleop/input', '/bot1/mux/teleop', '/bot1/mux/navi'

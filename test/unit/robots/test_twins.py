@@ -3,7 +3,7 @@
 """Two computers that are one robot: seen, and taken for it in no other case."""
 import pytest
 
-from mhri.robots.twins import GuardTurns, listed, twins
+from mhri.robots.twins import GuardTurns, listed, twins, twins_on_graph
 
 A, B, HOST = '10.0.0.1', '10.0.0.2', '10.0.0.9'
 
@@ -22,6 +22,18 @@ A, B, HOST = '10.0.0.1', '10.0.0.2', '10.0.0.9'
     ([{'/b/base': A}, {'/b/base': A}], {'/b/base': A}, set())])
 def test_twins(odometry, listeners, found):
     assert twins(odometry, listeners) == found
+
+
+@pytest.mark.parametrize('topic, kind, publishers, found', [
+    ('/b/imu', 'sensor_msgs/Imu', ['/b/base', '/b/base2'], True),
+    ('/b/imu', 'sensor_msgs/Imu', ['/b/base', '/b/recorder'], False),
+    ('/c/imu', 'sensor_msgs/Imu', ['/b/base', '/b/base2'], False),
+    ('/b/joint_states', 'sensor_msgs/JointState', ['/b/base', '/b/base2'], False),
+    ('/b/diagnostics', 'diagnostic_msgs/DiagnosticArray', ['/b/base', '/b/base2'], False)])
+def test_twins_without_odometry_publish_the_same_measurement(topic, kind, publishers, found):
+    graph = [(topic, publishers), ('/b/scan', ['/b/laser'])]
+    assert twins_on_graph('b', graph, {topic: kind}, ['/b/base', '/b/base2']) == (
+        {'/b/base', '/b/base2'} if found else set())
 
 
 def test_some_names_stand_for_all():

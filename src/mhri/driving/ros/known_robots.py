@@ -12,9 +12,10 @@ from mhri.driving.operator_lease import MAX_ROBOTS
 from mhri.graph.ros.announcer import Announcer
 from mhri.graph.ros.master_api import MasterApi, MasterError
 from mhri.robots.ros.registry import RobotRegistry
+from mhri.robots.twins import twins_on_graph
 
 PERIOD_S = 1.0
-# How long to redetermine the type of a robot that publishes its own velocity [s].
+# How long to redetermine what generic robots are after a node of their velocity is new [s].
 AGAIN_S = 5.0
 
 
@@ -26,19 +27,21 @@ class KnownRobots:
     driven needs its zero, even if it was deselected meanwhile.
 
     :param types: {name: RobotType}
-    :param open_line: called with (name, RobotType), on the thread; replaces an open line
+    :param open_line: called with (name, RobotType, whether it is only presumed), on the thread;
+        replaces an open line
     :param close_line: called with a name, on the thread
     :param watched: returns {name: (topics, prefixes of topics)} of the robots whose other
         publishers are to be reported
     :param on_publishers: called with a name and {(caller id, topic)}, on the thread
-    :param insiders: returns {name: frozenset of the robot's own nodes that publish its velocity} of
-        robots that are driven as generic
+    :param doubted: returns {name: the nodes that read its velocity} of robots that may be two
+    :param on_twins: called with a name and the nodes that are a robot each, on the thread
+    :param nodes: returns {name: frozenset of the nodes that read or publish the robot's velocity}
     :param unheard: see :class:`mhri.graph.ros.announcer.Announcer`; of robots that are present
     :param memory: :class:`mhri.graph.ros.stand_by.Memory` of the previous drive
     """
 
     def __init__(self, types, open_line, close_line, unheard, memory, watched, on_publishers,
-                 insiders):
+                 doubted, on_twins, nodes):
         self._registry = RobotRegistry(types)
         self._open_line = open_line
         self._close_line = close_line
@@ -46,8 +49,9 @@ class KnownRobots:
         self._memory = memory
         self._watched = watched
         self._on_publishers = on_publishers
-        self._insiders = insiders
-        self._inside = {}
+        self._doubted, self._on_twins = doubted, on_twins
+        self._nodes = nodes
+        self._met, self._new_at = {}, -math.inf
         self._checked = frozenset()
         self._ever = {}
         self._recalled = False
@@ -113,29 +117,29 @@ class KnownRobots:
             del self._open[name]
             self._registry.forget(name)
             self._close_line(name)
-        known = self._registry.seen() - self._changing(time.monotonic())
+        known = () if self._changing(time.monotonic()) else self._registry.seen()
         for name, robot_type in self._registry.look(wanted, known).items():
             if self._open.get(name) != robot_type:
                 self._open[name] = robot_type
-                self._open_line(name, robot_type)
-        watched = self._watched()
-        if watched:
-            self._report_publishers(api.call('getSystemState')[0], watched)
+                self._open_line(name, robot_type, self._registry.presumed(name))
+        watched, doubted = self._watched(), self._doubted()
+        if watched or doubted:
+            published = api.call('getSystemState')[0]
+            self._report_publishers(published, watched)
+            kinds = dict(api.call('getTopicTypes')) if doubted else {}
+            for name, nodes in doubted.items():
+                self._on_twins(name, twins_on_graph(name, published, kinds, nodes))
 
     def _changing(self, now):
-        """Return the robots with new publishers of their own on velocity topics, as a set.
+        """Return whether a node that reads or publishes the velocity of a robot is new.
 
-        They stay in it for a few seconds: a multiplexer may still be starting.
+        It stays new for a few seconds: a multiplexer may still be starting. And it may show that
+        another robot is only an input of this one.
         """
-        found = set()
-        for name, inside in self._insiders().items():
-            known, at = self._inside.get(name, (frozenset(), -math.inf))
-            if inside - known:
-                at = now
-            self._inside[name] = inside, at
-            if now - at < AGAIN_S:
-                found.add(name)
-        return found
+        before, self._met = self._met, self._nodes()
+        if any(nodes - before.get(name, frozenset()) for name, nodes in self._met.items()):
+            self._new_at = now
+        return now - self._new_at < AGAIN_S
 
     def _report_publishers(self, published, watched):
         """Report the publishers of the robots' topics and of topics with their prefixes."""

@@ -21,7 +21,9 @@ It is the only node that sends commands to robots. Interfaces (global names; SI 
 - parameters: ``~config`` (path of the sources' YAML, default ``resource/mux.yaml``), ``~enabling``,
   ``~automatic_switching`` and ``~dead_man`` (default: the values in that file), ``~journal`` (path
   of the journal to write, see :mod:`mhri.driving.journal`; default: none), ``/mux/sources``
-  (written: list of {name, label}); file: ``$ROS_HOME/mhri/stop`` (a stop-all in force)
+  (written: list of {name, label}), ``/mux/kept`` (written: the state for the next mux as JSON, see
+  :meth:`mhri.driving.drive.Drive.kept`; '' for none); file: ``$ROS_HOME/mhri/stop`` (a stop-all in
+  force)
 
 Everything runs on ROS threads and one thread of the mux; a single lock guards all of it.
 """
@@ -50,6 +52,7 @@ from mhri.driving.pad_accessories import PadAccessories
 from mhri.driving.ros.drive_speaker import DriveSpeaker
 from mhri.driving.ros.mux_advice import Advice
 from mhri.driving.ros.mux_diagnostics import MuxDiagnostics
+from mhri.driving.ros.mux_takeover import keep, recalled, SOURCES_PARAMETER
 from mhri.driving.ros.robot_lines import RobotLines
 from mhri.driving.ros.source_topic import LONGEST_TEXT, SourceTopic
 from mhri.driving.ros.suspender import Suspender
@@ -74,13 +77,10 @@ ASK_S = 0.5
 REFUSED_S = 30.0
 # A node that takes control has this long to connect as a publisher of the selection [s].
 CONNECT_S, LOOK_S = 1.0, 0.05
-SOURCES_PARAMETER = '/mux/sources'
 # Other publishers of these topics are reported; no robot obeys them.
 MIRRORS = TWIST_MIRROR, STOP_MIRROR = '/robot_controller/twist', '/robot_controller/stop_all'
 # The node of the tasks; the most values of an accessory that are read.
 TASKS, MAX_VALUES = '/mhri_tasks', 4
-#: key in the memory for the state of the next drive
-KEPT = 'drive'
 # {action of a button: request to the panel}
 _REQUESTS = {NEXT_ROBOT: PanelRequest.NEXT, PREVIOUS_ROBOT: PanelRequest.PREVIOUS,
              SELECT_ALL: PanelRequest.SELECT_ALL, MARK: PanelRequest.MARK}
@@ -111,8 +111,9 @@ class Mux:
         self._topics = {source.name: SourceTopic(source, clock) for source in config.sources}
         self._pads = {source.name: PadAccessories() for source in config.sources}
         self._run_id, self._journal = uuid.uuid4().hex[:12], journal
+        kept = recalled(memory, stop_file, partial(Drive, config, clock()))
         self._drive = drive = (partial(journal.drive, self._run_id) if journal else Drive)(
-            config, clock(), self._recalled(), self._strangers.refuse,
+            config, clock(), kept, self._strangers.refuse,
             lambda name: self._topics[name].connected())
         self._lines = RobotLines(drive, self._changed, types, memory, clock, self._changed.notify,
                                  self._on_foreign_stop, self._strangers.refuse, undertaker,
@@ -149,19 +150,6 @@ class Mux:
         self._diagnostics = MuxDiagnostics(
             drive, self._changed, clock, config, self._topics,
             {'suspend': self._suspender.state, 'strangers': self._strangers.words})
-
-    def _recalled(self):
-        """Return the state kept by the previous drive, with a stop from memory or file."""
-        kept = dict(self._memory.recall(KEPT) or {})
-        try:
-            stopped = self._stop_file.stopped()
-        except OSError as error:
-            stopped = True
-            rospy.logwarn('stop-all may have been in force, so it is now: %s', error)
-        kept['stop'] = bool(kept.get('stop') or stopped)
-        if kept['stop']:
-            rospy.logwarn('stop-all was in force when the last mux ended: it still is')
-        return kept
 
     def start(self):
         """Start publishing, subscribing and serving."""
@@ -241,7 +229,7 @@ class Mux:
         """Store the state for the next drive, if it has changed."""
         before, self._kept = self._kept, self._drive.kept()
         if self._kept != before:
-            self._memory.keep(KEPT, self._kept)
+            keep(self._memory, self._watch, self._kept)
 
     # The operator's input.
 
@@ -316,8 +304,10 @@ class Mux:
                    twist.angular.x, twist.angular.y, twist.angular.z)
                   for twist in message.twists[:MAX_ON_TASKS + 1]]
         with self._changed:
-            orders, problem = self._drive.on_task(robots, twists, self._clock())
+            now = self._clock()
+            orders, problem = self._drive.on_task(robots, twists, now)
             self._lines.carry_out(orders)
+            self._lines.on_task(caller_of(message), robots, now)
         if problem:
             rospy.logwarn_throttle(1.0, 'refused from /mux_in/task: {}'.format(problem))
 

@@ -129,7 +129,7 @@ class RobotLine:
         self.power = MotorPower(name, robot_type)
         self._streams = RobotStreams(name, robot_type, (HARDWARE_STOP,), clock)
         self._streams.open(HARDWARE_STOP)
-        self._navigation = OwnNavigation(name, safely(self._on_abandoned))
+        self._navigation = OwnNavigation(name, safely(self._on_abandoned), clock)
         self._witness, self._compared_at = OdometryWitness(), -math.inf
         # The last velocity that the guard has passed on to the robot.
         self._given = ZERO
@@ -138,8 +138,10 @@ class RobotLine:
         self._registered = frozenset()
         self._others = OtherDrivers(safely(self._on_other_motion), clock)
         # Messages of the robot may arrive from here on.
-        self._turns = GuardTurns()
+        self._turns, self._claimed = GuardTurns(), set()
         self._unreadable_at, self._unlinked_since = -math.inf, None
+        # The node whose last echo was unreadable; if it hangs, it must not be bypassed either.
+        self._unreadable = ''
         self._held_by, self._complained_at = '', -math.inf
         self._odometry = [
             rospy.Subscriber(topic_of(name, topic), rospy.AnyMsg, safely(self._on_odometry),
@@ -210,10 +212,20 @@ class RobotLine:
                   if topic.rpartition('/')[0].endswith('/input')]
         return topics, tuple(inputs + ['/{}/cmd_vel_mux/input/'.format(self.name)])
 
-    def insiders(self):
-        """Return the robot's own nodes that publish its velocity, except its guard."""
-        return frozenset(name for name, _ in self._foreign(self._others.connected())
-                         if name.startswith('/{}/'.format(self.name)))
+    def alike(self):
+        """Return the robot's own nodes that read one velocity topic, if they are several."""
+        own = '/{}/'.format(self.name)
+        return next((names for names in self._obeying[1:] if len(names) > 1
+                     and all(name.startswith(own) for name in names)), frozenset())
+
+    def on_twins(self, found):
+        """Handle the nodes that publish the same measurements and read the robot's velocity."""
+        self._claimed = found
+
+    def nodes(self):
+        """Return the nodes that read the robot's velocity or publish it, except its guard."""
+        return frozenset(name for name, _ in self._foreign(self._others.connected())).union(
+            *self._obeying[1:])
 
     def on_publishers(self, found):
         """Handle the registered publishers as {(caller id, topic)} (blocking: calls the master)."""
@@ -290,10 +302,12 @@ class RobotLine:
             if self.rule is None:
                 return
             if message is None or not self._guard.on_echo(message.header.frame_id, now):
-                self._unreadable_at = now
+                self._unreadable_at, self._unreadable = now, caller
                 self._complain(caller, 'mhri_guard/echo, {}'.format(version), now)
                 self._settle_hold(now)
                 return
+            if caller == self._unreadable:
+                self._unreadable = ''
             self._turns.on_token(self._guard.token, now)
             self._store_final_frames()
             stopped = self._guard.stop_confirmed
@@ -330,7 +344,8 @@ class RobotLine:
         if self.robot_type.guard_behind if alive else self.robot_type.is_behind:
             return RobotDrive.UNREACHABLE
         # Once the guard's echoes are readable, unreadable ones from other nodes do not count.
-        if not alive and now - self._unreadable_at < UNREADABLE_S:
+        if not alive and (now - self._unreadable_at < UNREADABLE_S
+                          or self._unreadable and self._unreadable in publishers(self._echo)):
             return RobotDrive.GUARD_VERSION
         if not alive or self._publishers[0].links():
             self._unlinked_since = None
@@ -353,7 +368,8 @@ class RobotLine:
     def _twins(self):
         """Return the nodes or computers that each claim to be this robot, as a set."""
         if all(ear.get_num_connections() < 2 for ear in self._odometry):
-            return set()
+            found = self._claimed and self._claimed & self.alike()
+            return found if len(found) > 1 else set()
         commands = set().union(*self._obeying[1:])
         hosts = peer_hosts(link for links in self._links[1:] for link in links)
         return twins(map(publisher_hosts, self._odometry),
@@ -392,7 +408,8 @@ class RobotLine:
         ids = [listeners(link) for link in links]
         guard = {guard_node(self.name)}
         obeying_now = obeying(self.name, ids[:1]) + obeying(
-            self.name, [names - guard for names in ids[1:]])
+            self.name, [names - guard for names in ids[1:]],
+            [publisher.resolved_name in self._behind for publisher in self._publishers[1:]])
         known = {id(link) for old in self._links for link in old}
         new = any(id(link) not in known and link.endpoint_id in names
                   for found, names in zip(links[1:], obeying_now[1:]) for link in found)
@@ -418,7 +435,11 @@ class RobotLine:
         """Switch the robot's brake and its own navigation by its commander."""
         self._eye.switch(self._desk.drive.settings.brake and self.rule.selected
                          and not self._guard_brakes())
-        self._navigation.end_while(self.rule.selected or self.rule.stopped, now)
+        self._navigation.tick(self.rule.selected or self.rule.stopped, now)
+
+    def on_task(self, caller, named, now):
+        """Handle the commands of a program of tasks; ``named``: whether they name this robot."""
+        self._navigation.on_task(caller, named, now)
 
     def _beat(self, now):
         """Confirm to a guard that would otherwise drive its robot back that the drive is alive."""

@@ -46,7 +46,8 @@ class RobotLines:
         # Static transforms suffice: a laser does not move on its robot.
         self._frames = TfFeed(clock)
         self._known = KnownRobots(types, self._open, self._close, self._unheard, memory,
-                                  self._watched, self._on_publishers, self._insiders)
+                                  self._watched, self._on_publishers, self._doubted, self._on_twins,
+                                  self._nodes)
 
     def start(self):
         """Start looking for robots; return at once."""
@@ -96,6 +97,10 @@ class RobotLines:
             except Exception as error:  # isolate the robots from each other
                 rospy.logerr_throttle(1.0, '{}: its line failed: {!r}'.format(line.name, error))
 
+    def on_task(self, caller, robots, now):
+        """Handle the commands of a program of tasks for some robots."""
+        self._each(lambda line: line.on_task(caller, line.name in robots, now))
+
     def follow(self, now):
         """Apply the selection and the robots' commanders."""
         self._known.check(self.drive.lease.selected)
@@ -136,7 +141,7 @@ class RobotLines:
                 line.power.restore()
         self._known.look_now()
 
-    def _open(self, name, robot_type):
+    def _open(self, name, robot_type, presumed):
         """Open the line to a robot, replacing its old one (on the thread of known robots)."""
         old = self._end(name)
         try:
@@ -153,7 +158,7 @@ class RobotLines:
             self._on_open(name, line.publishers)
             now = self._clock()
             orders = self.drive.open(name, robot_type.limits, now, line.brake,
-                                     robot_type.accessories)
+                                     robot_type.accessories, presumed)
             line.rule = self.drive.robots[name]
             self.carry_out(orders)
             line.follow(now)
@@ -201,11 +206,23 @@ class RobotLines:
             return {name: line.velocity_topics() for name, line in self._lines.items()
                     if line.rule.stopped}
 
-    def _insiders(self):
-        """Return {name: the nodes of a generic robot that publish its velocity}."""
+    def _nodes(self):
+        """Return {name: the nodes that read or publish the robot's velocity}."""
         with self.lock:
-            return {name: line.insiders() for name, line in self._lines.items()
-                    if line.robot_type.name == 'generic'}
+            return {name: line.nodes() for name, line in self._lines.items()}
+
+    def _doubted(self):
+        """Return {name: the nodes that read its velocity} of robots that may be two."""
+        with self.lock:
+            found = {name: line.alike() for name, line in self._lines.items()}
+        return {name: nodes for name, nodes in found.items() if nodes}
+
+    def _on_twins(self, name, found):
+        """Handle the nodes that are one robot each (on the thread of known robots)."""
+        with self.lock:
+            line = self._lines.get(name)
+            if line is not None:
+                line.on_twins(found)
 
     def _on_publishers(self, name, found):
         """Handle the publishers of a robot's velocity topics (on the thread of known robots)."""

@@ -29,7 +29,7 @@ class SourceTopic:
         self._clock = clock
         self._subscriber = None
         self._is_twist = source.kind == TWIST
-        self._links = {}
+        self._links, self._count = {}, 0
         self._newest = None, None, None
         self._heard = None
         self._rival = self._refusal = None
@@ -64,7 +64,8 @@ class SourceTopic:
         caller, name = caller_of(message), frame[:LONGEST_TEXT]
         known, number = self._links.get(caller, (None, 0))
         if link is not known:
-            number += 1
+            # Never the number of another connection, also after this one has gone.
+            number = self._count = self._count + 1
             self._links[caller] = (link, number)
         lost = name.endswith(LOST)
         name = name[:-len(LOST)] if lost else name

@@ -12,6 +12,7 @@ from mhri.graph.ros.rospy_inside import (
     caller_of, latches, link_of, on_publisher_gone, publisher_processes, sender_uri)
 from mhri.msg import RobotSelect
 
+WISH = '/robot_controller/robot_select'
 # Of wishes that arrive at once, this many of the newest are handled in order: a robot left out and
 # included again was deselected in between.
 MAX_AT_ONCE = 10
@@ -35,8 +36,8 @@ class WishTopic:
 
     def start(self):
         """Subscribe the topic."""
-        self._subscriber = rospy.Subscriber('/robot_controller/robot_select', RobotSelect,
-                                            self._receive, queue_size=MAX_AT_ONCE, tcp_nodelay=True)
+        self._subscriber = rospy.Subscriber(WISH, RobotSelect, self._receive,
+                                            queue_size=MAX_AT_ONCE, tcp_nodelay=True)
         on_publisher_gone(self._subscriber, self._forget)
 
     def _receive(self, message):

@@ -50,7 +50,8 @@ class MasterWatch:
         self._api = MasterApi(rospy.get_name(), timeout_s=patience_s)
         self._misses = 0
         self.lost = False
-        self._done = threading.Event()
+        self._due = {}
+        self._done, self._news = threading.Event(), threading.Event()
         self._thread = threading.Thread(target=self._run, name='master_watch', daemon=True)
 
     def start(self):
@@ -64,6 +65,12 @@ class MasterWatch:
     def stop(self):
         """Stop the thread; return at once."""
         self._done.set()
+        self._news.set()
+
+    def keep_parameter(self, name, value):
+        """Set a parameter soon, and after every restart; return at once."""
+        self.parameters[name] = self._due[name] = value
+        self._news.set()
 
     def set_parameter(self, name, value):
         """Set a parameter now (blocking, so never on the GUI thread) and after every restart."""
@@ -72,7 +79,12 @@ class MasterWatch:
         MasterApi(rospy.get_name(), timeout_s=1.0).call('setParam', name, value)
 
     def _run(self):
-        while not self._done.wait(self._period_s) and not rospy.is_shutdown():
+        while not rospy.is_shutdown():
+            # A call that failed is repeated after the period, whatever there is to be set.
+            (self._done if self._misses else self._news).wait(self._period_s)
+            self._news.clear()
+            if self._done.is_set():
+                return
             begun = time.monotonic()
             try:
                 self._look()
@@ -106,6 +118,13 @@ class MasterWatch:
             self._register()
             rospy.loginfo('the ROS master had forgotten %s: registered again', rospy.get_name())
         self.lost = False
+        for name in list(self._due):
+            value = self._due.pop(name)
+            try:
+                self._api.call('setParam', name, value)
+            except MasterError:
+                self._due.setdefault(name, value)
+                raise
 
     def _miss(self, reason, hangs):
         """Count a call without an answer; two in a row, or one that hangs, mean a lost master."""

@@ -69,7 +69,8 @@ def look_for_robots(caller_id, ignore, known=(), api=None, types=None):
     # A part of a living robot is not a robot itself; a dead robot has no parts.
     root_lives = any(item.seen.at_root and item.name in alive for item in candidates)
     candidates = [item for item in candidates
-                  if not item.part or item.name in alive and not root_lives]
+                  if not item.seen.input_of
+                  and (not item.part or item.name in alive and not root_lives)]
     return Found(
         live=tuple(item for item in candidates if item.name in alive),
         leftovers=tuple(item for item in candidates

@@ -61,6 +61,10 @@ class RobotRegistry:
             self._kinds[name] = kind
         return self._kinds[name]
 
+    def presumed(self, name):
+        """Return whether nothing is known of a robot but its name, so that its type is a guess."""
+        return not (self.parameters.get(name) or self._seen.get(name, Seen()).anything())
+
     def problem(self, name):
         """Return the problem with the parameters of a robot in words, '' for none."""
         return ''.join(self._problems.get(name, [])[:1])

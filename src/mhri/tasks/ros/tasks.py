@@ -6,9 +6,10 @@ Interfaces (global names; SI units):
 
 - serves the action ``/mhri_tasks/run`` (``mhri/RunTask``), any number of goals at a time, and
   ``/mhri_tasks/end`` (``mhri/EndTask``), which takes single robots out of their goals
-- publishes ``/mux_in/task`` (``mhri/TeamTwist``, 20 Hz while a robot is on a task, with zeros for
-  0.6 s after it), ``/mux_in/accessory`` (``mhri/Accessory``, as tasks ask for) and
-  ``/mhri_tasks/list`` (``mhri/TaskList``, latched, on change)
+- publishes ``/mux_in/task`` (``mhri/TeamTwist``, 20 Hz while a robot is on a task, without those
+  that their own navigation drives; with zeros for 0.6 s after it), ``/mux_in/accessory``
+  (``mhri/Accessory``, as tasks ask for) and ``/mhri_tasks/list`` (``mhri/TaskList``, latched, on
+  change)
 - subscribes ``/mux/state`` (``mhri/DriveState``), only from the mux in force; odometry and
   ``/vrpn_client_node/<robot>/pose`` of every robot of the mux; laser or depth camera, and battery,
   of robots on a task
@@ -310,7 +311,8 @@ class Tasks:
                 continue
             message.robots.append(name)
             message.twists.append(to_twist(*velocity))
-        if message.robots:
+        # Also without robots: the mux cancels what nobody supervises.
+        if message.robots or busy:
             message.header.stamp = rospy.Time.now()
             self._task.publish(message)
 
