@@ -76,8 +76,8 @@ class Seen:
         equally likely
     :param instance: prefix of the topics of this robot, e.g. ``/turtle2``, if one node has several
         robots; else None
-    :param behind: its velocity topics published by one of its own nodes that also subscribes
-        velocities: a multiplexer with its lock
+    :param behind: its velocity topics published by a node that also subscribes velocities, and not
+        those of another robot: a multiplexer with its lock
     :param guard_behind: the ones of these that its guard publishes as well
     :param input_of: another robot, whose base its velocity topics command; None if they do not
     """
@@ -434,8 +434,8 @@ def resolve_robot_type(types: Mapping[str, RobotType], robot: str, params: Mappi
 def _behind(chosen: RobotType, seen: Seen, overrides: object) -> RobotType:
     """Return a generic type with its topics behind the robot's own multiplexer marked.
 
-    All of a namespace are that only commands another robot: mhri must not drive that twice.
-    Topics set by the robot's parameters are not marked: they were chosen deliberately.
+    So are all topics of a namespace that only commands another robot, which mhri must not drive
+    twice. Topics set by the robot's parameters are not marked: they were chosen deliberately.
     """
     if chosen.name != 'generic':
         return chosen

@@ -52,6 +52,12 @@ class DrivenLimits:
                 for name, held in self._held.items()}
 
     def restore(self, kept: Mapping[str, Sequence[float]]) -> None:
-        """Restore the result of :meth:`kept` of the previous process."""
+        """Restore the result of :meth:`kept` of the previous process.
+
+        :raises AttributeError, TypeError, ValueError: it is malformed
+        """
         self._held = {name: Limits(float(linear), float(angular), bool(holonomic))
                       for name, (linear, angular, holonomic) in kept.items()}
+        if not all(held.linear_mps > 0.0 and held.angular_rad_s > 0.0
+                   for held in self._held.values()):
+            raise ValueError('a limit that is not above 0')

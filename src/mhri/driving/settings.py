@@ -82,10 +82,14 @@ class SettingsInForce:
 
         :raises TypeError, ValueError: it is malformed
         """
-        in_force, others = kept
-        own = {operator: Settings(*settings) for operator, settings in others}
-        self.in_force, self._own = Settings(*in_force), own
-        for settings in (self.in_force, *own.values()):
-            problem = settings_problem([settings])
-            if problem:
-                raise ValueError(problem)
+        in_force, own = kept
+        self.in_force = _restored(*in_force)
+        self._own = {operator: _restored(*settings) for operator, settings in own}
+
+
+def _restored(linear_mps: float, angular_rad_s: float, *flags: bool) -> Settings:
+    settings = Settings(float(linear_mps), float(angular_rad_s), *map(bool, flags))
+    problem = settings_problem([settings])
+    if problem:
+        raise ValueError(problem)
+    return settings

@@ -42,7 +42,8 @@ def test_what_one_mux_keeps_the_next_one_has_also_if_its_memory_is_gone(paramete
     assert next_one(Memory(), stopped=True) == kept
 
 
-@pytest.mark.parametrize('text', ['{', '[]', '7', 7, '{"seat": 1}', '["a"]', [1]])
+@pytest.mark.parametrize('text', [
+    '{', '[]', '7', 7, '{"seat": 1}', '["a"]', [1], '[' * 100000])
 def test_what_cannot_be_read_stops_everything_and_puts_nobody_in_control(parameters, text):
     parameters[KEPT_PARAMETER] = text
 

@@ -526,11 +526,14 @@ def test_a_drive_whose_memory_is_lost_stands_and_gives_the_seat_to_one_who_takes
     {'settings': [['fast', 1.0], []]}, {'settings': [[float('nan'), 1.0], []]},
     {'settings': [[0.5, 1.0], [['/a', [99.0, 1.0]]]]},
     {'driven': {'bot1': [1.0]}}, {'alone': ['bot1']},
-    {'alone': {'bot1': []}}, {'sources': None}, {'sources': {'joy': 'x'}}, {'mode': []}])
+    {'driven': {'bot1': [float('nan'), 1.0, False]}}, {'driven': {'bot1': [0.5, 0.0, False]}},
+    {'driven': {'bot1': [0.5, float('nan'), False]}},
+    {'alone': {'bot1': []}}, {'sources': None}, {'sources': {'joy': 'x'}}, {'mode': []},
+    {'sources': {'joy': [None, '', None, ['/a', 5]]}}])
 def test_a_malformed_memory_is_refused(change):
     kept = dict(json.loads(json.dumps(driving('bot1').drive.kept())), **change)
     with pytest.raises((AttributeError, LookupError, TypeError, ValueError)):
-        Drive(CONFIG, 0.0, kept)
+        Drive(CONFIG, 0.0, kept).kept()
 
 
 def test_a_seat_whose_holder_did_not_come_back_is_empty_and_the_settings_stay():

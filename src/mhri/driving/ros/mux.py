@@ -111,7 +111,7 @@ class Mux:
         self._topics = {source.name: SourceTopic(source, clock) for source in config.sources}
         self._pads = {source.name: PadAccessories() for source in config.sources}
         self._run_id, self._journal = uuid.uuid4().hex[:12], journal
-        kept = recalled(memory, stop_file, partial(Drive, config, clock()))
+        kept = recalled(memory, stop_file, lambda found: Drive(config, clock(), found).kept())
         self._drive = drive = (partial(journal.drive, self._run_id) if journal else Drive)(
             config, clock(), kept, self._strangers.refuse,
             lambda name: self._topics[name].connected())

@@ -12,8 +12,8 @@ import xmlrpc.client
 import rospy
 
 from mhri.driving.drive import LOST
-from mhri.graph.ros.master_api import ERRORS, MasterApi, MasterError, TimedTransport
 from mhri.driving.ros.wish_topic import WISH
+from mhri.graph.ros.master_api import ERRORS, MasterApi, MasterError, TimedTransport
 from mhri.graph.ros.service_owner import STOP_SERVICE
 
 TIMEOUT_S = 1.5
@@ -92,7 +92,7 @@ def recalled(memory, stop_file, use, callers=callers_of_before):
             kept = {'forgotten': True} if lost else json.loads(text or '{}')
         kept = dict(kept)
         use(kept)
-    except (AttributeError, LookupError, TypeError, ValueError) as error:
+    except (AttributeError, LookupError, RecursionError, TypeError, ValueError) as error:
         rospy.logwarn('%s cannot be used (%r): everything is stopped, and nobody is in control',
                       KEPT_PARAMETER, error)
         kept = dict(LOST)
