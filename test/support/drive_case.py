@@ -123,6 +123,14 @@ class DriveCase(unittest.TestCase):
         os.kill(number, signal.SIGKILL)
         return when, run
 
+    @classmethod
+    def start_second(cls):
+        """Start another drive of the same name, whereupon the first one ends."""
+        run, first = cls.state.message.run, cls.drive_process
+        cls.launch_drive()
+        cls.state.wait(lambda state: state.run != run, 'the second one', 20.0)
+        first.end()
+
     def setUp(self):
         self.operator.check()
         self.operator.set()

@@ -311,7 +311,7 @@ class Drive:
         """
         self._awake(now)
         for name in names:
-            if name in self._rules or len(self.alone) < MAX_ROBOTS:
+            if name in self._rules or len(self._alone) < MAX_ROBOTS:
                 self._alone.stop(name, self.lease.operator)
         self._settle_stops(now)
         return self._done()
@@ -327,7 +327,7 @@ class Drive:
     def _settle_stops(self, now: float) -> None:
         self.changes += 1
         for name, rule in self._rules.items():
-            self._send(name, rule.stop(self.stop_all, name in self.alone, now))
+            self._send(name, rule.stop(self.stop_all, name in self._alone, now))
 
     # Robots.
 
@@ -575,9 +575,9 @@ class Drive:
         self._pass_on(self.arbiter.on_selection(selected, now), now)
         for name, rule in self._rules.items():
             if name in selected:
-                self._driven.select_one(name, self._type_limits[name])
+                self._driven.on_selected(name, self._type_limits[name])
             rule.limits = self._driven.of(name, self._type_limits[name])
-            self._send(name, rule.stop(self.stop_all, name in self.alone, now))
+            self._send(name, rule.stop(self.stop_all, name in self._alone, now))
             self._send(name, rule.select(name in selected, now))
         self._pass_on(self.arbiter.let_sideways(any(
             rule.selected and rule.limits.holonomic for rule in self._rules.values()), now), now)

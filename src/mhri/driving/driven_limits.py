@@ -37,7 +37,7 @@ class DrivenLimits:
         if name in self._held:
             self.note(name, limits)
 
-    def select_one(self, name: str, limits: Limits) -> None:
+    def on_selected(self, name: str, limits: Limits) -> None:
         """Handle a selected robot, with its current limits by type and parameters."""
         if name not in self._presumed:
             self.note(name, limits)

@@ -20,6 +20,12 @@ class StoppedAlone:
         """The stopped robots."""
         return frozenset(self._stops)
 
+    def __contains__(self, name: object) -> bool:
+        return name in self._stops
+
+    def __len__(self) -> int:
+        return len(self._stops)
+
     def stop(self, name: str, operator: str) -> None:
         """Stop a robot while an operator, '' for none, is in control."""
         self._stops[name] = operator, False

@@ -18,7 +18,7 @@ Parameters = Mapping[str, object]
 Types = Mapping[str, RobotType]
 
 TWIST = 'geometry_msgs/Twist'
-# What the base of a robot publishes, and no multiplexer of velocities; and exceptions.
+# Message types that a robot's base or sensors publish, but not a multiplexer; and exceptions.
 _MEASURED = ('nav_msgs/Odometry', 'sensor_msgs/')
 _NOT_MEASURED = ('sensor_msgs/Joy', 'sensor_msgs/JointState')
 ROOT = ''
@@ -72,7 +72,7 @@ def parse_ignore_list(text: str, origin: str) -> IgnoreList:
 
 
 def is_measured(kind: str) -> bool:
-    """Return whether a message type is what only the base of a robot, or its sensor, publishes."""
+    """Return whether only the base of a robot, or its sensors, publish a message type."""
     return kind.startswith(_MEASURED) and not kind.startswith(_NOT_MEASURED)
 
 
@@ -117,8 +117,8 @@ def find_candidates(system_state: SystemState, parameters: Parameters, ignore: I
     nor under a known robot, or velocity topics that a node outside of it reads (a simulator). The
     root is a robot, named :func:`root_name`, if it has a ``robot_type`` or velocity topics;
     namespaces without either then count as its parts. A node with several robots (``instance`` of
-    a type) yields each of them. A namespace without a type whose velocity ends at the base of
-    another robot is none (``joy_teleop`` of husky_control): no two robots have one base.
+    a type) yields each of them. A namespace without a type whose velocity only reaches the base of
+    another robot (``joy_teleop`` of husky_control) is left out: no two robots have one base.
 
     :param system_state: publishers, subscribers, services as the master lists them
     :param parameters: all parameters as one nested dict
@@ -184,8 +184,8 @@ class Survey:
         self._commands: Dict[str, List[str]] = {}
         self._listeners: Dict[str, Set[str]] = {}
         self._share_out_commands()
-        # {namespace: the nodes that are its own base}; {namespace that is no robot: the one whose
-        # base it commands}.
+        # {namespace: the nodes of its own base}; {namespace that is not a robot: the one whose base
+        # it commands}.
         self._bases: Dict[str, Set[str]] = {}
         self._inputs = self._find_inputs()
 
@@ -299,14 +299,14 @@ class Survey:
     def _find_inputs(self) -> Dict[str, str]:
         """Return {namespace: another one, which has the base that its velocity reaches}."""
         reach = {name: self._reach(name) for name in self._commands}
-        tells: Dict[str, Set[str]] = {}
+        measuring: Dict[str, Set[str]] = {}
         for topic, nodes in self._publishers.items():
             if is_measured(self._topic_types.get(topic, '')):
-                tells.setdefault(split(topic)[0], set()).update(nodes)
+                measuring.setdefault(split(topic)[0], set()).update(nodes)
         for name, (visited, ends, _) in reach.items():
             inside = {node for node in ends if split(node)[0] == name}
-            telling = visited & tells.get(name, set()) if name != ROOT else set()
-            self._bases[name] = inside | telling
+            self._bases[name] = inside | (
+                visited & measuring.get(name, set()) if name != ROOT else set())
         inputs = {}
         for name, (_, ends, _) in reach.items():
             if name in self._typed or name == ROOT and 'robot_type' in self._parameters:

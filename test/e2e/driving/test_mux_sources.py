@@ -120,6 +120,13 @@ class MuxSources(unittest.TestCase):
         killed = pad.process.send(9)
         zero = self.twists.wait(rests, killed)
         measured('joy_node: killed to zero', zero.at - killed, 0.3)
+        # Started anew with the button held: that has to be released once.
+        pad = self.start('joy_node', 'joy', '/joy', 'joy_node')
+        begun = pad.say(REST, buttons)
+        self.waits.settle('dead_man')
+        pad.say(UP, buttons)
+        self.twists.wait_silence(0.7)
+        self.assertFalse([item for item in self.twists.since(begun) if moves(item.value)])
 
     def test_rqt_robot_steering(self):
         """10 Hz while it moves; zero once, then nothing."""

@@ -5,9 +5,10 @@ import json
 import time
 
 import rospy
+from std_srvs.srv import Trigger
 
 from support.drive_case import DriveCase
-from support.graph import SELECT
+from support.graph import SELECT, TAKE_CONTROL
 from support.own_node import own_node
 from support.node_tools import Process
 from support.velocity import VelocityEnd
@@ -68,15 +69,15 @@ class WishTest(DriveCase):
         self.script('-r', '10', robots=[self.ours, self.other], settings=[FAST], mode='pedal')
         self.refused()
         self.pushed(SLOW_MPS)
-        for kill in (self.kill, self.kill_both):
-            kill()
+        for replace in (self.kill, self.kill_both, self.start_second):
+            replace()
             self.pushed(SLOW_MPS)
             said = self.state.message
             self.assertEqual((said.operator, said.mode), (rospy.get_name(), 'joy'))
             self.assertAlmostEqual(said.settings.linear_mps, SLOW_MPS, 6)
         self.empty_seat()
-        for kill in (self.kill, self.kill_both):
-            kill()
+        for replace in (self.kill, self.kill_both, self.start_second):
+            replace()
             self.refused()
             self.assertEqual(self.state.message.operator, '')
             self.assertAlmostEqual(self.state.message.settings.linear_mps, SLOW_MPS, 6)
@@ -91,6 +92,20 @@ class WishTest(DriveCase):
         self.assertAlmostEqual(self.state.message.settings.linear_mps, SLOW_MPS, 6)
         self.script('-r', '2', robots=[self.other], name='present')
         self.state.wait(lambda state: state.operator == '/present', 'the seat')
+
+    def test_who_gets_control_back_is_not_made_faster_by_another(self):
+        self.script('-r', '10', robots=[self.other], settings=[FAST])
+        self.refused()
+        self.operator.set(None)
+        # In the name of the script.
+        take = rospy.ServiceProxy(TAKE_CONTROL, Trigger, headers={'callerid': '/lab_script'})
+        self.assertTrue(take().success)
+        self.state.wait(lambda state: state.operator == '/lab_script'
+                        and state.settings.linear_mps > 1.0, 'its settings')
+        self.operator.take()
+        self.select_anew(self.ours)
+        self.pushed(SLOW_MPS)
+        self.assertAlmostEqual(self.state.message.settings.linear_mps, SLOW_MPS, 6)
 
     def test_a_limit_that_rises_before_the_robot_has_moved_does_not_count_either(self):
         name, topic = self.new_name(), '/{}/cmd_vel'

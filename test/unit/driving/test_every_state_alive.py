@@ -93,7 +93,7 @@ CHANGES = [
     ('drive', 'return not self._pulse.discards_backlog(now)', 'return True', 'stops', DRIVING),
     ('drive', "if not (trusted or self.lease.operator in ('', caller)):", 'if False:', 'operators',
      DRIVING),
-    ('drive', 'self._driven.select_one(name, self._type_limits[name])', 'pass', 'robots',
+    ('drive', 'self._driven.on_selected(name, self._type_limits[name])', 'pass', 'robots',
      ('wait 1', 'wish a gp', 'reopen p 1')),
     ('drive', "self._owners[name].restore(kept['sources'][name])", 'pass', 'operators',
      BEHIND_B + ('restart -', 'wait 6')),

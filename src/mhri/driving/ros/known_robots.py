@@ -15,7 +15,7 @@ from mhri.robots.ros.registry import RobotRegistry
 from mhri.robots.twins import twins_on_graph
 
 PERIOD_S = 1.0
-# How long to redetermine what generic robots are after a node of their velocity is new [s].
+# How long to look at the whole graph after a new node reads or publishes a robot's velocity [s].
 AGAIN_S = 5.0
 
 
@@ -33,7 +33,7 @@ class KnownRobots:
     :param watched: returns {name: (topics, prefixes of topics)} of the robots whose other
         publishers are to be reported
     :param on_publishers: called with a name and {(caller id, topic)}, on the thread
-    :param doubted: returns {name: the nodes that read its velocity} of robots that may be two
+    :param readers: returns {name: its nodes that read one velocity topic} of robots with several
     :param on_twins: called with a name and the nodes that are a robot each, on the thread
     :param nodes: returns {name: frozenset of the nodes that read or publish the robot's velocity}
     :param unheard: see :class:`mhri.graph.ros.announcer.Announcer`; of robots that are present
@@ -41,7 +41,7 @@ class KnownRobots:
     """
 
     def __init__(self, types, open_line, close_line, unheard, memory, watched, on_publishers,
-                 doubted, on_twins, nodes):
+                 readers, on_twins, nodes):
         self._registry = RobotRegistry(types)
         self._open_line = open_line
         self._close_line = close_line
@@ -49,9 +49,9 @@ class KnownRobots:
         self._memory = memory
         self._watched = watched
         self._on_publishers = on_publishers
-        self._doubted, self._on_twins = doubted, on_twins
+        self._readers, self._on_twins = readers, on_twins
         self._nodes = nodes
-        self._met, self._new_at = {}, -math.inf
+        self._known_nodes, self._new_at = {}, -math.inf
         self._checked = frozenset()
         self._ever = {}
         self._recalled = False
@@ -117,17 +117,18 @@ class KnownRobots:
             del self._open[name]
             self._registry.forget(name)
             self._close_line(name)
-        known = () if self._changing(time.monotonic()) else self._registry.seen()
+        changing = self._changing(time.monotonic())
+        known = () if changing else self._registry.seen()
         for name, robot_type in self._registry.look(wanted, known).items():
             if self._open.get(name) != robot_type:
                 self._open[name] = robot_type
                 self._open_line(name, robot_type, self._registry.presumed(name))
-        watched, doubted = self._watched(), self._doubted()
-        if watched or doubted:
+        watched, readers = self._watched(), self._readers() if changing else {}
+        if watched or readers:
             published = api.call('getSystemState')[0]
             self._report_publishers(published, watched)
-            kinds = dict(api.call('getTopicTypes')) if doubted else {}
-            for name, nodes in doubted.items():
+            kinds = dict(api.call('getTopicTypes')) if readers else {}
+            for name, nodes in readers.items():
                 self._on_twins(name, twins_on_graph(name, published, kinds, nodes))
 
     def _changing(self, now):
@@ -136,8 +137,9 @@ class KnownRobots:
         It stays new for a few seconds: a multiplexer may still be starting. And it may show that
         another robot is only an input of this one.
         """
-        before, self._met = self._met, self._nodes()
-        if any(nodes - before.get(name, frozenset()) for name, nodes in self._met.items()):
+        before, self._known_nodes = self._known_nodes, self._nodes()
+        if any(nodes - before.get(name, frozenset())
+               for name, nodes in self._known_nodes.items()):
             self._new_at = now
         return now - self._new_at < AGAIN_S
 

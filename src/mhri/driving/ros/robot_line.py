@@ -212,7 +212,7 @@ class RobotLine:
                   if topic.rpartition('/')[0].endswith('/input')]
         return topics, tuple(inputs + ['/{}/cmd_vel_mux/input/'.format(self.name)])
 
-    def alike(self):
+    def several_readers(self):
         """Return the robot's own nodes that read one velocity topic, if they are several."""
         own = '/{}/'.format(self.name)
         return next((names for names in self._obeying[1:] if len(names) > 1
@@ -368,7 +368,7 @@ class RobotLine:
     def _twins(self):
         """Return the nodes or computers that each claim to be this robot, as a set."""
         if all(ear.get_num_connections() < 2 for ear in self._odometry):
-            found = self._claimed and self._claimed & self.alike()
+            found = self._claimed and self._claimed & self.several_readers()
             return found if len(found) > 1 else set()
         commands = set().union(*self._obeying[1:])
         hosts = peer_hosts(link for links in self._links[1:] for link in links)

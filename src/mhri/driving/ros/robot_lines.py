@@ -46,7 +46,7 @@ class RobotLines:
         # Static transforms suffice: a laser does not move on its robot.
         self._frames = TfFeed(clock)
         self._known = KnownRobots(types, self._open, self._close, self._unheard, memory,
-                                  self._watched, self._on_publishers, self._doubted, self._on_twins,
+                                  self._watched, self._on_publishers, self._readers, self._on_twins,
                                   self._nodes)
 
     def start(self):
@@ -211,10 +211,10 @@ class RobotLines:
         with self.lock:
             return {name: line.nodes() for name, line in self._lines.items()}
 
-    def _doubted(self):
-        """Return {name: the nodes that read its velocity} of robots that may be two."""
+    def _readers(self):
+        """Return {name: its nodes that read one velocity topic} of robots with several."""
         with self.lock:
-            found = {name: line.alike() for name, line in self._lines.items()}
+            found = {name: line.several_readers() for name, line in self._lines.items()}
         return {name: nodes for name, nodes in found.items() if nodes}
 
     def _on_twins(self, name, found):
