@@ -4,6 +4,12 @@
 # Shared by turtle_remote.sh and the scripts of utils/host: checks of their arguments. Sourced,
 # never run; usage_error is the script's own. Works with the bash of Ubuntu 16.04.
 
+# Numbers, order, ranges such as [a-z] and the words of tools are the same in every language; the
+# characters stay the user's.
+[ -z "${LC_ALL:-}" ] || export LC_CTYPE=$LC_ALL
+unset LC_ALL
+export LC_NUMERIC=C LC_COLLATE=C LC_TIME=C LC_MESSAGES=C
+
 # unarmed TEXT: prints it without control characters, which a terminal would obey.
 unarmed() { printf '%s' "${1//[[:cntrl:]]/?}"; }
 

@@ -1,11 +1,15 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Makes foreign texts safe to display: short, on one line, without direction marks."""
+import math
+import re
 from typing import Iterable, Tuple
 
 MAX_CHARACTERS = 200
 MAX_NAMES = 64
 _MORE = '...'
+_MINUS = '\u2212'
+_NUMBER = re.compile('[+-]?([0-9]+[.,]?[0-9]*|[.,][0-9]+)')
 
 
 def tidy_text(text: str, most: int = MAX_CHARACTERS) -> str:
@@ -32,3 +36,29 @@ def listed(names: Iterable[str], most: int = 4) -> str:
     if len(names) <= most:
         return ', '.join(names)
     return '{} and {} more'.format(', '.join(names[:most]), len(names) - most)
+
+
+def typed_number(text: str, least: float = -math.inf, greatest: float = math.inf) -> float:
+    """Parse a typed number, in the same way on a computer of any language.
+
+    Point and comma are both the decimal sign: a language in which one of them groups digits would
+    make 15 of 1.5.
+
+    :raises ValueError: it is no number, e.g. has a sign between groups of digits, or is out of
+        bounds; the message quotes it and says what is expected
+    """
+    plain = text.strip().replace(_MINUS, '-')
+    if not _NUMBER.fullmatch(plain):
+        raise ValueError("'{}' is not a number: write it like 1.5, with nothing between groups of "
+                         'digits'.format(tidy_text(text.strip(), 40)))
+    value = float(plain.replace(',', '.'))
+    if not least <= value <= greatest:
+        raise ValueError('{} is out of bounds: from {:g} to {:g}'.format(plain, least, greatest))
+    return value
+
+
+def shown_number(value: float, decimals: int = 0) -> str:
+    """Return a number with a decimal point and up to six decimals, at least this many."""
+    whole, _, fraction = '{:.6f}'.format(value).partition('.')
+    fraction = fraction.rstrip('0').ljust(decimals, '0')
+    return whole + '.' * bool(fraction) + fraction

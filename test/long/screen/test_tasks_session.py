@@ -40,7 +40,7 @@ def start(session, key, robot, **values):
     session.presenter.screen.look_at(robot)
     page.choose(key)
     for name, value in values.items():
-        session.hands.widget('task_field_' + name, page).setValue(value)
+        session.hands.widget('task_field_' + name, page).set_value(value)
     before = len(texts(session, 'task.begun', robot))
     session.until(Errand(
         lambda: session.hands.click('task_start_button', page),

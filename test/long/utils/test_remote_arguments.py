@@ -231,3 +231,33 @@ def test_host_keys_are_left_to_ssh():
     """No script tells ssh to trust what it does not know."""
     for script in SCRIPTS.values():
         assert not re.search('StrictHostKey|KnownHosts|keyscan', script.read_text())
+
+
+@pytest.fixture(scope='module', params=['LANG', 'LC_ALL'])
+def german(request, tmp_path_factory):
+    """The environment of a computer that speaks German: decimal commas, umlauts from a to z."""
+    place = tmp_path_factory.mktemp('locales')
+    subprocess.run(['localedef', '-i', 'de_DE', '-f', 'UTF-8', str(place / 'de_DE.UTF-8')],
+                   check=True)
+    return {'LOCPATH': str(place), request.param: 'de_DE.UTF-8'}
+
+
+@pytest.mark.parametrize('script, arguments', [
+    ('remote', ['192.0.2.1', 'b\u00f6t']), ('connect', ['t\u00fcrtle', '192.0.2.7', 'bot1']),
+    ('remote', ['192.0.2.1', 'bot\u00b2'])])
+def test_letters_and_digits_are_the_same_in_every_language(run, german, script, arguments):
+    status, output = run(script, *arguments, **german)
+    assert status == 2 and '--help' in output and run.calls() == []
+
+
+def test_numbers_and_order_are_the_same_in_every_language(german):
+    env = dict(german, PATH='/usr/bin:/bin')
+    assert subprocess.check_output(['seq', '0.5', '1'], env=env) == b'0,5\n', 'it is in force'
+    done = subprocess.run(
+        ['bash', '-c', '. "$0"; printf "%.1f " 1.5; seq 0.5 1; echo 1.5 | awk "{print 2 * \\$1}"; '
+         'printf "b\\nB\\na\\n" | sort; ls /nowhere 2>&1; echo \u00e4 | tr -d "\\n" | wc -m',
+         str(REPO / 'utils/remote/turtle_arguments.sh')], env=env,
+        stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True)
+    *numbers, failed, characters = done.stdout.splitlines()
+    assert numbers == ['1.5 0.5', '3', 'B', 'a', 'b'] and 'No such file' in failed
+    assert characters == '1', 'an umlaut is still one character'

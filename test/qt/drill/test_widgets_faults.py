@@ -40,13 +40,19 @@ def test_every_fault_is_in_the_list_with_its_default(page, operator, asked):
 
 
 def test_value_robot_and_time_are_chosen(page, operator, asked):
-    page.findChild(QWidget, 'fault_value_delay').setValue(0.25)
+    page.findChild(QWidget, 'fault_value_delay').setText('0,25')
     page.robot_combo.setCurrentText('bot2')
-    page.duration.setValue(0.0)
-    assert page.duration.text() == 'until ended'
+    page.duration.set_value(None)
+    assert page.duration.placeholderText() == 'until ended'
     press(page, operator, 'delay')
     press(page, operator, 'node_dead')
     assert asked == [('bot2', 'delay', 0.25, 0.0), ('bot2', 'node_dead', 0.0, FOR_S)]
+
+
+def test_what_is_no_number_is_refused(page, operator, asked):
+    page.findChild(QWidget, 'fault_value_delay').setText('1.000,5')
+    press(page, operator, 'delay')
+    assert asked == [] and '1.000,5' in page.answer.text()
 
 
 def test_what_fails_is_said_and_can_be_ended(page, operator, asked):

@@ -5,6 +5,8 @@ from dataclasses import replace
 import math
 
 import pytest
+from python_qt_binding.QtCore import QLocale, Qt
+from python_qt_binding.QtTest import QTest
 from python_qt_binding.QtWidgets import QPushButton, QWidget
 
 from mhri.base.gui import theme
@@ -63,11 +65,15 @@ def start(page, operator):
 def test_numbers_have_units_limits_and_defaults(page, operator, asked):
     assert page.keys == ['goto', 'follow', 'patrol', 'return', 'formation', 'dance']
     assert page.kind is KINDS[0]
-    assert field(page, 'x').text() == 'required' and field(page, 'heading').text() == 'optional'
-    assert field(page, 'speed').text() == '0.20 m/s' and field(page, 'timeout').text() == '120 s'
-    field(page, 'speed').setValue(99.0)
-    field(page, 'x').setValue(-1.25)
-    field(page, 'heading').setValue(90.0)
+    assert [field(page, name).placeholderText() for name in ('x', 'heading')] == [
+        'required', 'optional']
+    assert field(page, 'speed').text() == '0.20' and field(page, 'timeout').text() == '120'
+    field(page, 'speed').set_value(99.0)
+    field(page, 'x').set_value(-1.25)
+    field(page, 'heading').set_value(90.0)
+    shown = start(page, operator)
+    assert shown.startswith('speed') and '99' in shown and '2' in shown and asked == []
+    field(page, 'speed').set_value(2.0)
     assert start(page, operator) == ''
     (key, values), = asked
     assert key == 'goto' and values['heading'] == pytest.approx(math.pi / 2.0, abs=1e-5)
@@ -78,9 +84,67 @@ def test_what_has_to_be_given_is_asked_for_in_place_and_what_may_be_left_out_is(
         page, operator, asked):
     assert start(page, operator).startswith('x ') and asked == []
     assert page.problem.sign.sign == (theme.TRIANGLE, theme.ATTENTION)
-    field(page, 'x').setValue(0.0)
+    field(page, 'x').set_value(0.0)
     assert start(page, operator) == ''
     assert asked == [('goto', {'x': 0.0, 'speed': 0.2, 'timeout': 120.0})]
+    field(page, 'speed').set_value(None)
+    assert start(page, operator).startswith('speed ') and len(asked) == 1
+
+
+@pytest.fixture(params=['de_DE', 'fr_FR', 'es_ES', 'de_CH', 'en_US', 'ar_EG'])
+def language(request):
+    """The language of the computer: Qt's default, which a number widget of its own would obey."""
+    before = QLocale()
+    QLocale.setDefault(QLocale(request.param))
+    yield request.param
+    QLocale.setDefault(before)
+
+
+@pytest.mark.parametrize('typed, value', [
+    ('1.5', 1.5), ('1,5', 1.5), ('0.5', 0.5), ('-2.25', -2.25), ('-2,25', -2.25)])
+def test_a_typed_number_is_the_same_in_every_language(
+        language, page, operator, asked, typed, value):
+    for name, text in (('x', typed), ('heading', '22,5')):
+        operator.click(field(page, name))
+        QTest.keyClicks(field(page, name), text)
+    assert start(page, operator) == ''
+    (_, values), = asked
+    assert values['x'] == value and values['heading'] == pytest.approx(math.radians(22.5), abs=1e-5)
+    assert field(page, 'heading').text() == '22.5', 'what was understood is shown'
+
+
+@pytest.mark.parametrize('typed', ['1.500,0', '1,500.0', '1.000.000', '1 500', "1'500", '1.5 km'])
+def test_signs_between_groups_are_refused_in_sight_and_nothing_starts(
+        language, page, operator, asked, typed):
+    x = field(page, 'x')
+    plain = x.edge_colour()
+    QTest.keyClicks(x, typed)
+    shown = start(page, operator)
+    assert shown.startswith('x') and typed in shown.replace('\u00a0', ' ') and asked == []
+    assert x.text() == typed and x.edge_colour() != plain
+    x.step(1)
+    assert x.text() == typed, 'is not stepped over'
+    x.clear()
+    QTest.keyClicks(x, '2')
+    assert x.edge_colour() == plain
+    assert start(page, operator) == '' and asked[0][1]['x'] == 2.0
+
+
+def test_numbers_are_stepped_by_buttons_and_arrow_keys_within_their_limits(page, operator):
+    x, speed = field(page, 'x'), field(page, 'speed')
+    less, more = (next(part for part in page.findChildren(QPushButton)
+                       if part.accessibleName() == 'speed ' + sign) for sign in '\u2212+')
+    operator.click(more)
+    assert speed.text() == '0.25'
+    for _ in range(9):
+        operator.click(less)
+    assert speed.text() == '0.02'
+    QTest.keyClick(x, Qt.Key_Up)
+    assert x.text() == '0.00'
+    QTest.keyClick(x, Qt.Key_Up)
+    assert x.text() == '0.10'
+    QTest.keyClick(x, Qt.Key_Down)
+    assert x.given() == 0.0
 
 
 def test_a_leader_is_chosen_among_the_robots(page, operator, asked):
@@ -132,7 +196,10 @@ def test_the_place_of_a_task_is_chosen_on_the_map_if_it_has_one(page, operator, 
     assert not page.places_button.isVisible(), 'no map'
     page.offer_places(('goto',))
     operator.settle()
-    field(page, 'speed').setValue(0.1)
+    field(page, 'speed').setText('1.000,0')
+    operator.click(page.places_button)
+    assert asked == [] and '1.000,0' in page.problem.text()
+    field(page, 'speed').set_value(0.1)
     operator.click(page.places_button)
     assert asked == [('goto', {'speed': 0.1, 'timeout': 120.0})] and page.problem.text() == ''
     page.choose('return')

@@ -3,7 +3,8 @@
 """Texts of others: short, printable, and quick to deal with whatever they are."""
 import pytest
 
-from mhri.base.text import listed, MAX_CHARACTERS, MAX_NAMES, tidy_names, tidy_text
+from mhri.base.text import (
+    listed, MAX_CHARACTERS, MAX_NAMES, shown_number, tidy_names, tidy_text, typed_number)
 
 
 @pytest.mark.parametrize('text, tidy', [
@@ -29,3 +30,34 @@ def test_names():
 def test_listed():
     assert listed([]) == '' and listed('abc') == 'a, b, c' and len(listed('abcdef')) < 30
     assert 'e' not in listed('abcdef').split(', ')
+
+
+@pytest.mark.parametrize('typed, value', [
+    ('1.5', 1.5), ('1,5', 1.5), ('-2.25', -2.25), ('-2,25', -2.25), (' 0,5 ', 0.5), ('+3', 3.0),
+    ('\u22121,5', -1.5), (',5', 0.5), ('.5', 0.5), ('7,', 7.0), ('1.500', 1.5), ('0010', 10.0)])
+def test_point_and_comma_are_the_decimal_sign(typed, value):
+    assert typed_number(typed) == value
+    assert typed_number(shown_number(value)) == value
+
+
+@pytest.mark.parametrize('typed', [
+    '1.500,0', '1,500.0', '1.000.000', '1 500', '1\u202f500', '1\u00a0500', "1'500", '1\u2019500',
+    '1_500', '1,5,0', '', '.', '-', 'x', '1e3', '1:30', '0x1F', 'nan', 'inf', '\u0661', '1.5 m',
+    '--1', '1-', '1.5.', '\u00bd', '1' * 400 + 'x'])
+def test_what_is_no_number_is_refused_and_quoted(typed):
+    with pytest.raises(ValueError) as refused:
+        typed_number(typed)
+    assert tidy_text(typed)[:30] in str(refused.value) and len(str(refused.value)) < 200
+
+
+@pytest.mark.parametrize('typed', ['0,019', '2.01', '-1', '9' * 400])
+def test_a_number_out_of_bounds_is_refused_with_the_bounds(typed):
+    with pytest.raises(ValueError, match='from 0.02 to 2'):
+        typed_number(typed, 0.02, 2.0)
+
+
+@pytest.mark.parametrize('value, decimals, text', [
+    (0.2, 2, '0.20'), (120.0, 0, '120'), (1.2345, 2, '1.2345'), (-0.5, 0, '-0.5'),
+    (1e6, 0, '1000000'), (1.0 / 3.0, 2, '0.333333')])
+def test_shown_number(value, decimals, text):
+    assert shown_number(value, decimals) == text

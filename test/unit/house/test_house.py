@@ -4,6 +4,7 @@
 import ast
 import functools
 from pathlib import Path
+import re
 import sys
 
 import pytest
@@ -31,6 +32,9 @@ KINDS = ('io', 'ros', 'gui', 'presenters')
 JOINING = {'mhri_plugin.py', 'standalone.py', 'nodes'}
 
 
+# Qt's and Python's means to read and show numbers as the computer's language has them.
+BY_LANGUAGE = {'locale', 'QLocale', 'QSpinBox', 'QDoubleSpinBox', 'QInputDialog', 'QIntValidator',
+               'QDoubleValidator', 'QTextStream'}
 # rospy's own modules, and three files that reach for them and look first what is there.
 BENEATH = {'client', 'core', 'impl', 'msg', 'msproxy', 'names', 'service', 'timer', 'topics'}
 INSIDE = ('graph/ros/rospy_inside.py', 'graph/ros/non_blocking.py', 'graph/ros/peers.py')
@@ -270,8 +274,18 @@ def rospy_problems(relative, text):
         'reaches beneath rospy: ' + name for name in beneath(text)]
 
 
+def language_problems(relative, text):
+    """What reads or shows numbers in the computer's language: 1.5 would be 15."""
+    return ['line {}: {} goes by the language: take NumberField, or format()'.format(line, name)
+            for line, name in sorted(
+                (node.lineno, name) for node in nodes(text)
+                for name in [getattr(node, 'attr', ''), getattr(node, 'id', '')] + [
+                    alias.name for alias in getattr(node, 'names', ()) if hasattr(alias, 'name')]
+                if name in BY_LANGUAGE)]
+
+
 RULES = (import_problems, order_problems, call_problems, size_problems, spdx_problems,
-         swallow_problems, constructor_problems, bag_problems, rospy_problems)
+         swallow_problems, constructor_problems, bag_problems, rospy_problems, language_problems)
 
 
 def script_problems(name, text):
@@ -299,6 +313,19 @@ def problems(paths, root, rules):
 
 def test_files_keep_the_rules():
     assert problems(source_files(), SOURCE, RULES) == []
+
+
+def test_forms_have_no_number_widgets():
+    for form in (REPO / 'resource').rglob('*.ui'):
+        assert [name for name in BY_LANGUAGE if name in form.read_text()] == []
+
+
+def test_scripts_do_not_go_by_the_language():
+    """Whoever runs a script gets the settings of turtle_arguments.sh, by common.sh or directly."""
+    wants = re.compile(r'printf .*%[0-9.]*[efg]|\b(sort|awk|seq|date|tr|comm|bc)\b|=~|\[a-z')
+    scripts = [path.read_text() for path in (REPO / 'utils').rglob('*.sh')]
+    assert [text[:300] for text in scripts if text.startswith('#!') and wants.search(text)
+            and not re.search(r'^\. .*/(common|turtle_arguments)\.sh"$', text, re.M)] == []
 
 
 def test_files_outside_src_keep_size_and_licence():
@@ -427,6 +454,8 @@ GOOD = '{}x\n{}\n"""Text."""\n'.format(*SPDX)
     ('map/a.py', SPDX[0] + 'x\n"""Text."""\n', 'two SPDX lines'),
     ('map/ros/a.py', 'try:\n    f()\nexcept Exception:\n    pass\n', 'says nothing'),
     ('map/ros/a.py', 'try:\n    f()\nexcept:\n    pass\n', 'says nothing'),
+    ('map/gui/a.py', 'from python_qt_binding.QtWidgets import QLabel, QSpinBox\n', 'QSpinBox goes'),
+    ('map/ros/a.py', 'import locale\n', 'locale goes by the language'),
     ('map/gui/a.py', 'class A:\n    def __init__(self):\n        self._build()\n'
      '    def _build(self):\n        pass\n    def _connect(self):\n        pass\n',
      'call _connect'),

@@ -5,12 +5,13 @@
 They paint themselves, because within rqt the style belongs to rqt. Python cannot be the style
 either: PyQt may hand it the options of another control that was painted before.
 """
-from python_qt_binding.QtCore import QPointF, QRectF, QSize, Qt
+from python_qt_binding.QtCore import QEvent, QPointF, QRectF, QSize, Qt
 from python_qt_binding.QtGui import QPainter, QPainterPath, QPalette
 from python_qt_binding.QtWidgets import (
-    QComboBox, QDoubleSpinBox, QHeaderView, QLineEdit, QProgressBar, QPushButton, QSizePolicy)
+    QComboBox, QHeaderView, QLineEdit, QProgressBar, QPushButton, QSizePolicy)
 
 from mhri.base.gui import icons, theme
+from mhri.base.text import shown_number, typed_number
 
 
 def paint_control(painter, widget, on=False):
@@ -152,20 +153,6 @@ class Combo(QComboBox):
             self.fontMetrics(), (self.shown(),), words.width()))
 
 
-def _paint_field(painter, widget, ground):
-    """Paint ground, edge and focus of a field that is typed into.
-
-    :param ground: a brush, Qt.NoBrush for the edge alone
-    """
-    palette = widget.palette()
-    edge = theme.edge_colour(palette)
-    if not widget.isEnabled():
-        edge = theme.blend(edge, palette.color(QPalette.Window), 0.5)
-    theme.paint_box(painter, QRectF(widget.rect()), ground, edge)
-    if widget.hasFocus():
-        theme.paint_focus(painter, widget.rect(), palette)
-
-
 class LineField(QLineEdit):
     """A flat field for a line of text."""
 
@@ -181,21 +168,122 @@ class LineField(QLineEdit):
         painter, inside, corners = theme.smooth_painter(self), QPainterPath(), QPainterPath()
         inside.addRoundedRect(QRectF(self.rect()), theme.GRID, theme.GRID)
         corners.addRect(QRectF(self.rect()))
-        painter.fillPath(corners - inside, self.palette().color(QPalette.Window))
-        _paint_field(painter, self, Qt.NoBrush)
+        palette = self.palette()
+        painter.fillPath(corners - inside, palette.color(QPalette.Window))
+        edge = self.edge_colour()
+        if not self.isEnabled():
+            edge = theme.blend(edge, palette.color(QPalette.Window), 0.5)
+        theme.paint_box(painter, QRectF(self.rect()), Qt.NoBrush, edge)
+        if self.hasFocus():
+            theme.paint_focus(painter, self.rect(), palette)
+
+    def edge_colour(self):
+        """Return the colour of the edge."""
+        return theme.edge_colour(self.palette())
 
 
-class NumberBox(QDoubleSpinBox):
-    """A flat field for a number, without buttons: the built-in ones are too small for a finger."""
+class NumberField(LineField):
+    """A field for a number with its unit, the same on a computer of any language.
 
-    def __init__(self, *args, **kwargs):
-        super().__init__(*args, **kwargs)
-        self.setButtonSymbols(self.NoButtons)
-        self.lineEdit().setTextMargins(*(theme.GRID, 0) * 2)
+    Typed text stays as it is, and has the edge of a warning while it is not a number within the
+    bounds; what is left of a mistyped number is never taken for one. The arrow keys step.
+
+    :param unit: shown behind the number
+    :param decimals: shown at least
+    :param empty: shown while the field is empty
+    """
+
+    def __init__(self, unit, low, high, step, decimals=0, empty='', parent=None):
+        super().__init__(parent)
+        self._unit, self._low, self._high = unit, low, high
+        self._step, self._decimals = step, decimals
+        self._wrong = ''
+        self.setPlaceholderText(empty)
+        self._make_room()
+        self.editingFinished.connect(self._on_finished)
+        self.textChanged.connect(lambda _: self._wrong and self._check())
+
+    def changeEvent(self, event):  # noqa: N802
+        """Follow the size of the text."""
+        super().changeEvent(event)
+        if event.type() == QEvent.FontChange:
+            self._make_room()
+
+    def _make_room(self):
+        """Keep the place of the unit free."""
+        self.setTextMargins(2 * theme.GRID - 2, 0, 2 * theme.GRID + self._unit_width(), 0)
+
+    def _unit_width(self):
+        return self.fontMetrics().horizontalAdvance(' ' + self._unit)
+
+    def sizeHint(self):  # noqa: N802
+        """Return a width for the number and its unit, or for what an empty field shows."""
+        metrics, hint = self.fontMetrics(), super().sizeHint()
+        inside = max(metrics.horizontalAdvance(one)
+                     for one in (' -00000.00 ', self.placeholderText()))
+        hint.setWidth(inside + self._unit_width() + 4 * theme.GRID)
+        return hint
+
+    def value(self):
+        """Return the number, None if the field is empty.
+
+        :raises ValueError: it is not a number within the bounds
+        """
+        self._check()
+        if self._wrong:
+            raise ValueError(self._wrong)
+        return typed_number(self.text()) if self.text().strip() else None
+
+    def set_value(self, value):
+        """Show a number; None empties the field."""
+        self.setText('' if value is None else shown_number(value, self._decimals))
+
+    def step(self, steps):
+        """Add some steps within the bounds; an empty field begins at zero, a wrong one stays."""
+        try:
+            value = self.value()
+        except ValueError:
+            return
+        value = 0.0 if value is None else value + steps * self._step
+        self.set_value(min(self._high, max(self._low, value)))
+
+    def keyPressEvent(self, event):  # noqa: N802
+        """Step with the arrow keys."""
+        steps = {Qt.Key_Up: 1, Qt.Key_Down: -1}.get(event.key())
+        if steps:
+            self.step(steps)
+        else:
+            super().keyPressEvent(event)
+
+    def _check(self):
+        """Find out what is wrong with the text, and show it."""
+        try:
+            if self.text().strip():
+                typed_number(self.text(), self._low, self._high)
+            self._wrong = ''
+        except ValueError as error:
+            self._wrong = str(error)
+        self.update()
+
+    def _on_finished(self):
+        """Show a finished number as others are shown."""
+        self._check()
+        if not self._wrong:
+            self.set_value(self.value())
+
+    def edge_colour(self):
+        """Return the colour of the edge."""
+        return theme.colour(theme.ATTENTION, self.palette()) if self._wrong \
+            else super().edge_colour()
 
     def paintEvent(self, event):  # noqa: N802
-        """Paint ground, edge and focus; the number paints itself."""
-        _paint_field(QPainter(self), self, self.palette().color(QPalette.Base))
+        """Paint the unit behind the number."""
+        super().paintEvent(event)
+        if self.text():
+            painter = QPainter(self)
+            painter.setPen(theme.colour(theme.MUTED, self.palette()))
+            painter.drawText(self.rect().adjusted(0, 0, -2 * theme.GRID, 0),
+                             int(Qt.AlignRight | Qt.AlignVCenter), self._unit)
 
 
 class Head(QHeaderView):

@@ -5,8 +5,8 @@ from python_qt_binding.QtCore import Qt, Signal
 from python_qt_binding.QtWidgets import QGridLayout, QLabel
 
 from mhri.base.gui import theme
-from mhri.base.gui.choices import IgnoresWheel, offer
-from mhri.base.gui.controls import Button, Combo, NumberBox
+from mhri.base.gui.choices import offer
+from mhri.base.gui.controls import Button, Combo, NumberField
 from mhri.base.gui.labels import plain_label, SignedText
 from mhri.base.gui.layouts import add_parts, in_row
 from mhri.base.gui.page import Page
@@ -19,18 +19,13 @@ END_NOW = -1.0
 START, END = 'Start', 'End'
 
 
-class _Number(IgnoresWheel, NumberBox):
-    """A number field with a unit."""
-
-    def __init__(self, name, spoken, low, high, value, unit, parent):
-        super().__init__(parent)
-        theme.for_fingers(self, name, spoken)
-        self.setDecimals(2 if high <= 10.0 else 0)
-        self.setRange(low, high)
-        self.setSingleStep(0.1 if high <= 10.0 else 5.0)
-        self.setSuffix(' ' + unit)
-        self.setValue(value)
-        self.setFocusPolicy(Qt.StrongFocus)
+def _number(name, spoken, low, high, value, unit, empty, parent):
+    """Return a :class:`NumberField`."""
+    field = theme.for_fingers(NumberField(unit, low, high, 0.1 if high <= 10.0 else 5.0,
+                                          2 if high <= 10.0 else 0, empty, parent), name, spoken)
+    field.set_value(value)
+    field.setFocusPolicy(Qt.StrongFocus)
+    return field
 
 
 class FaultsPage(Page):
@@ -55,9 +50,8 @@ class FaultsPage(Page):
         """Make and place the parts."""
         self.robot_combo = theme.for_fingers(
             Combo(self), 'fault_robot', 'Robot that fails')
-        self.duration = _Number(
-            'fault_duration', 'How long it fails', 0.0, MAX_S, FOR_S, 's', self)
-        self.duration.setSpecialValueText('until ended')
+        self.duration = _number('fault_duration', 'How long it fails', 0.0, MAX_S, FOR_S, 's',
+                                'until ended', self)
         self.end_all_button = theme.for_fingers(Button('End all', self), 'fault_end_all')
         self.answer = SignedText(self)
         head = in_row((self.robot_combo, 1), QLabel('for', self), self.duration)
@@ -74,8 +68,8 @@ class FaultsPage(Page):
         grid.addWidget(plain_label(self, fault.label), place, 0)
         value = None
         if fault.unit:
-            value = _Number('fault_value_' + fault.key, fault.label, fault.low, fault.high,
-                            fault.default, fault.unit, self)
+            value = _number('fault_value_' + fault.key, fault.label, fault.low, fault.high,
+                            fault.default, fault.unit, '{:g}'.format(fault.default), self)
             grid.addWidget(value, place, 1)
         button = theme.for_fingers(Button(START, self), 'fault_button_' + fault.key)
         grid.addWidget(button, place, 2)
@@ -98,9 +92,14 @@ class FaultsPage(Page):
         if button.text() == END:
             self._ask(key, 0.0, END_NOW)
             return
-        # A dead driver must restart by itself, so the fault needs a duration.
-        for_s = self.duration.value() or (FOR_S if fault.timed else 0.0)
-        self._ask(key, value.value() if value else 0.0, for_s)
+        try:
+            # A dead driver must restart by itself, so the fault needs a duration.
+            for_s = self.duration.value() or (FOR_S if fault.timed else 0.0)
+            strength = value.value() if value else 0.0
+        except ValueError as error:
+            self.answer.show_text(str(error), True)
+            return
+        self._ask(key, fault.default if strength is None else strength, for_s)
 
     def _ask(self, key, value, for_s):
         if self.robot_combo.currentText():

@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """The fields of a task, made from its description: number, text, choice, or a name."""
+from functools import partial
 import math
 
 from python_qt_binding.QtCore import Qt
@@ -8,7 +9,7 @@ from python_qt_binding.QtWidgets import QComboBox, QGridLayout, QLabel, QWidget
 
 from mhri.base.gui import theme
 from mhri.base.gui.choices import IgnoresWheel
-from mhri.base.gui.controls import Button, Combo, LineField, NumberBox
+from mhri.base.gui.controls import Button, Combo, LineField, NumberField
 from mhri.base.task_views import typed_value
 
 LEFT_OUT, MISSING = 'optional', 'required'
@@ -16,51 +17,34 @@ LEFT_OUT, MISSING = 'optional', 'required'
 LEADER, MARK = 'leader', 'mark'
 _WHICH = {LEADER: 'which robot', MARK: 'which mark'}
 # Display of a unit: unit on the screen, factor, decimals, step.
-_SHOWN = {'rad': ('\u00b0', 180.0 / math.pi, 0, 15.0), 's': (' s', 1.0, 0, 10.0),
-          'm/s': (' m/s', 1.0, 2, 0.05), '': ('', 1.0, 0, 1.0)}
+_SHOWN = {'rad': ('\u00b0', 180.0 / math.pi, 0, 15.0), 's': ('s', 1.0, 0, 10.0),
+          'm/s': ('m/s', 1.0, 2, 0.05), '': ('', 1.0, 0, 1.0)}
 # Maximum length of typed text.
 _MAX_TEXT = 10000
 
 
-class NumberField(IgnoresWheel, NumberBox):
-    """A number with its unit and limits; its lowest value means "not given".
+class QuantityField(NumberField):
+    """A number with its unit and limits.
 
     :param field: :class:`mhri.base.task_views.FieldView`
     """
 
     def __init__(self, field, parent=None):
-        super().__init__(parent)
-        unit, self._factor, decimals, step = _SHOWN.get(
-            field.unit, (' ' + field.unit, 1.0, 2, 0.1))
-        default = field.default_value
-        least, greatest = field.least * self._factor, field.greatest * self._factor
-        if isinstance(default, float) and not default.is_integer() and not decimals:
-            decimals = 2
+        unit, self._factor, decimals, step = _SHOWN.get(field.unit, (field.unit, 1.0, 2, 0.1))
         self.may_be_left_out = field.default == 'null'
-        self._has_none = self.may_be_left_out or not field.default
-        self.setDecimals(decimals)
-        self.setSingleStep(step)
-        self.setSuffix(unit)
-        self.setRange(least - step if self._has_none else least, greatest)
-        if self._has_none:
-            self.setSpecialValueText(LEFT_OUT if self.may_be_left_out else MISSING)
-        self.setValue(default * self._factor if isinstance(default, (int, float))
-                      else self.minimum())
-        self.setFocusPolicy(Qt.StrongFocus)
-
-    def stepBy(self, steps):  # noqa: N802
-        """Step from "not given" to zero, or to the nearest allowed value."""
-        if self._has_none and self.value() == self.minimum() and steps > 0:
-            self.setValue(min(self.maximum(), max(self.minimum() + self.singleStep(), 0.0)))
-        else:
-            super().stepBy(steps)
+        super().__init__(unit, field.least * self._factor, field.greatest * self._factor, step,
+                         decimals, LEFT_OUT if self.may_be_left_out else MISSING, parent)
+        default = field.default_value
+        if isinstance(default, (int, float)):
+            self.set_value(default * self._factor)
 
     def given(self):
-        """Return the number in the unit of the task, None if it is not given."""
-        self.interpretText()
-        if self._has_none and self.value() == self.minimum():
-            return None
-        return round(self.value() / self._factor, 6)
+        """Return the number in the unit of the task, None if it is not given.
+
+        :raises ValueError: it is not a number within the limits
+        """
+        value = self.value()
+        return None if value is None else round(value / self._factor, 6)
 
 
 class TextField(LineField):
@@ -131,7 +115,7 @@ class NameField(IgnoresWheel, Combo):
 def _class_of(field):
     """Return the widget's class for a :class:`mhri.base.task_views.FieldView`."""
     if field.is_number:
-        return NumberField
+        return QuantityField
     if field.choices:
         return ChoiceField
     return NameField if field.name in _WHICH else TextField
@@ -191,9 +175,9 @@ class TaskFields(QWidget):
             grid.addWidget(name, row, 0)
             grid.addWidget(widget, row, 1, 1, 1 if field.is_number else 3)
             if field.is_number:
-                for place, (sign, step) in enumerate((('\u2212', widget.stepDown),
-                                                      ('+', widget.stepUp)), 2):
-                    grid.addWidget(self._step_button(field, sign, step), row, place)
+                for place, (sign, steps) in enumerate((('\u2212', -1), ('+', 1)), 2):
+                    grid.addWidget(self._step_button(
+                        field, sign, partial(widget.step, steps)), row, place)
         self._grid.addWidget(inside, 0, 0)
         return inside, fields
 
@@ -204,7 +188,7 @@ class TaskFields(QWidget):
         button.setFocusPolicy(Qt.NoFocus)
         button.setAutoRepeat(True)
         button.setAccessibleName('{} {}'.format(field.name, sign))
-        button.clicked.connect(step)
+        button.clicked.connect(lambda _: step())
         return button
 
     def show_names(self, robots, marks=()):
@@ -217,32 +201,23 @@ class TaskFields(QWidget):
             if isinstance(field, NameField):
                 field.show_names(self._names.get(name, ()))
 
-    def given(self):
-        """Return ({name: value}, problem as text) of the entries."""
+    def given(self, all_needed=True):
+        """Return ({name: value}, problem as text) of the entries.
+
+        :param all_needed: whether a required one that is missing is a problem
+        """
         values = {}
         for row in self._kind.fields if self._kind else ():
             field = self._fields[row.name]
             try:
                 value = field.given()
             except ValueError as error:
-                return {}, '{}: {}'.format(row.name, error)
-            if value is None and not field.may_be_left_out:
+                return {}, '{}: {}'.format(row.name.replace('_', ' '), error)
+            if value is None and all_needed and not field.may_be_left_out:
                 return {}, '{} is missing: {}'.format(row.name.replace('_', ' '), row.text)
             if value is not None:
                 values[row.name] = value
         return values, ''
-
-    def filled(self):
-        """Return {name: value} of the entries that are there and can be read."""
-        values = {}
-        for name, field in self._fields.items():
-            try:
-                value = field.given()
-            except ValueError:
-                continue
-            if value is not None:
-                values[name] = value
-        return values
 
     def let_go(self):
         """Release the keyboard focus, so that the keys drive again."""

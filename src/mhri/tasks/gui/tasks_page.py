@@ -116,10 +116,12 @@ class TasksPage(Page):
         self.show_problem('')
 
     def _ask_places(self):
-        """Request the map for the places of the task."""
-        self.show_problem('')
-        self.fields.let_go()
-        self.places_requested.emit(self.kind.key, self.fields.filled())
+        """Request the map for the places of the task, or show what is wrong."""
+        values, problem = self.fields.given(all_needed=False)
+        self.show_problem(problem)
+        if not problem:
+            self.fields.let_go()
+            self.places_requested.emit(self.kind.key, values)
 
     def _start(self):
         """Request the task, or show what is missing."""
