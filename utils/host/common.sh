@@ -17,6 +17,9 @@ XVFB_PID=
 PACKAGES=()
 LIBRARY=
 
+# That of a terminal in which a robot was started is not meant for the host.
+unset ROS_NAMESPACE
+
 # The system's python3 must come first: ROS is not installed for any other.
 [ "$(command -v python3)" = /usr/bin/python3 ] || export PATH="/usr/bin:$PATH"
 
@@ -40,7 +43,7 @@ DEBIAN_TEST=(
   librostest-dev python3-rostest python3-roslib topic-tools python3-pytest python3-pytest-timeout
   python3-flake8 python3-flake8-docstrings python3-pip python3-psutil python3-rosdep2 catkin-lint shellcheck mkdocs
   xdotool imagemagick x11-utils git procps espeak-ng sox ffmpeg openssh-server iproute2 nftables
-  chromium chromium-driver python3-selenium
+  locales chromium chromium-driver python3-selenium
 )
 # Only for the fast group of tests; most have the same names on Ubuntu.
 FAST=(
@@ -56,7 +59,7 @@ UBUNTU_RUN=(
 UBUNTU_TEST=(
   python3-pytest python3-pytest-timeout python3-flake8 python3-pip python3-psutil python3-catkin-lint
   shellcheck mkdocs xdotool imagemagick x11-utils git procps espeak-ng sox ffmpeg openssh-server
-  iproute2 nftables
+  iproute2 nftables locales
 )
 
 say() { printf 'mhri: %s\n' "$(unarmed "$*")"; }

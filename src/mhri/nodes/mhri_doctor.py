@@ -74,7 +74,9 @@ def _watchdogs(options):
     # Importing rospy and its messages takes time: only the trial needs them.
     import rospy
     from mhri.doctor.ros.watchdog import measure_watchdog
+    from mhri.graph.ros.rospy_inside import name_in
     # A signal must end the trial with its zeros, and rospy's own handlers would end the node.
+    name_in()
     rospy.init_node('mhri_doctor', anonymous=True, disable_signals=True)
     for number in (signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, lambda number, _: sys.exit(128 + number))

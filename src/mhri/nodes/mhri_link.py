@@ -209,11 +209,7 @@ def main():
     if options.side == 'router':
         route(options)
         return
-    if rospy.get_namespace() == '/':
-        # Started by hand. On the host it has to be a node of the robot; rospy reads its namespace
-        # only at the start.
-        os.execv(sys.argv[0], sys.argv + ['__ns:=/' + options.name])
-    start_node('mhri_link', disable_rostime=True)
+    start_node('mhri_link', '/' + options.name, disable_rostime=True)
     note = Note(options.router or options.connect or options.listen, bool(options.router))
     try:
         keys, carrier = call(options)

@@ -13,6 +13,7 @@ import rospy
 import yaml
 
 from mhri.graph.ros.master_api import MasterApi, MasterError
+from mhri.graph.ros.rospy_inside import name_in
 from mhri.msg import RunTaskAction, RunTaskGoal, TaskState
 from mhri.tasks.ros.exported import task_kinds
 from mhri.tasks.words import parameters_of, TaskWordsError, usage
@@ -101,6 +102,7 @@ def main():
         MasterApi('/mhri_task', timeout_s=2.0).call('getPid')
     except (TaskWordsError, MasterError) as error:
         sys.exit('mhri_task: {}'.format(error))
+    name_in()
     rospy.init_node('mhri_task', anonymous=True, disable_signals=True, disable_rostime=True)
     status = run(robots, key, yaml.safe_dump(parameters, default_flow_style=True))
     rospy.signal_shutdown('done')

@@ -33,6 +33,9 @@ from mhri.recording.recording import ros_home
 def config_path(argv):
     """Return ``~config`` of a node that does not exist yet, or ''.
 
+    It may still be in the namespace that a launch file or ``ROS_NAMESPACE`` gave the node, see
+    :func:`mhri.graph.ros.shutdown.init_node`.
+
     The file is read before the node takes its name: an error in it must not end the running mux.
 
     :raises MasterError: the master does not answer
@@ -40,10 +43,11 @@ def config_path(argv):
     own = [word.split(':=', 1)[1] for word in argv if word.startswith('_config:=')]
     if own:
         return own[-1]
-    mappings = rosgraph.names.load_mappings(argv)
-    name = rosgraph.names.resolve_name(
-        mappings.get('__name', 'mux'), rosgraph.names.get_ros_namespace(argv=argv))
-    return MasterApi(name, timeout_s=5.0).call_many([('getParam', name + '/config')])[0] or ''
+    name = rosgraph.names.load_mappings(argv).get('__name', 'mux') + '/config'
+    found = MasterApi('/mux', timeout_s=5.0).call_many([
+        ('getParam', namespace + name)
+        for namespace in (rosgraph.names.get_ros_namespace(argv=argv), '/')])
+    return found[0] or found[1] or ''
 
 
 def adjusted(config):

@@ -10,6 +10,7 @@ from python_qt_binding.QtWidgets import QApplication
 import rospy
 
 from mhri.graph.ros import log
+from mhri.graph.ros.rospy_inside import name_in
 from mhri.standalone import Standalone
 
 PLUGIN = 'mhri.mhri_plugin.MhriPlugin'
@@ -42,6 +43,7 @@ def parse(argv):
 def main():
     """Run the panel until it is closed; the exit status is the demo's, else 0."""
     options = parse(rospy.myargv(sys.argv)[1:])
+    name_in()
     in_rqt = options.gui == 'rqt' or options.gui == 'auto' and shutil.which('rqt')
     if in_rqt and not (options.demo or options.replay):
         if not shutil.which('rqt'):

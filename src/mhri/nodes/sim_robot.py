@@ -139,7 +139,7 @@ def build(name, of_robot):
 
 def main():
     """Run until shut down; exit with 1 and a reason if the robot cannot be built."""
-    start_node('base')
+    start_node('base', namespace=None)
     name = rospy.get_namespace().strip('/')
     if not name or '/' in name:
         rospy.logfatal('start a simulated robot inside a group named after it: '

@@ -31,10 +31,19 @@ ROOT_PARAMETERS = ('robot_type', 'robot_model')
 
 @dataclass(frozen=True)
 class IgnoreList:
-    """Names that are never robots: shell patterns (``*``, ``?``) for nodes and namespaces."""
+    """Names that are never robots: shell patterns (``*``, ``?``) for nodes and namespaces.
+
+    ``tools`` are nodes' own names, in any namespace: a terminal's ``ROS_NAMESPACE`` may be any.
+    """
 
     nodes: Tuple[str, ...] = ()
     namespaces: Tuple[str, ...] = ()
+    tools: Tuple[str, ...] = ()
+
+    def is_tool(self, node: str) -> bool:
+        """Return whether a node is a tool, such as rviz, and not part of a robot."""
+        own = node.rpartition('/')[2]
+        return any(fnmatchcase(own, pattern) for pattern in self.tools)
 
     def covers(self, node: str, namespace: str) -> bool:
         """Return whether a node (with leading slash) or its namespace (without) is ignored."""
@@ -66,7 +75,7 @@ def parse_ignore_list(text: str, origin: str) -> IgnoreList:
     :raises ConfigError: names the file and the wrong key
     """
     section = parse_yaml(text, origin)
-    ignore = IgnoreList(section.texts('nodes', ()), section.texts('namespaces', ()))
+    ignore = IgnoreList(*(section.texts(key, ()) for key in ('nodes', 'namespaces', 'tools')))
     section.close()
     return ignore
 
@@ -171,7 +180,7 @@ class Survey:
         self._members: Dict[str, List[str]] = {}
         for node in nodes_of(system_state):
             namespace, _ = split(node)
-            if not self._ignored(node) and not self._is_nested(node):
+            if self._may_be_robot(node) and not self._is_nested(node):
                 self._members.setdefault(namespace, []).append(node)
         self._root_nodes = set(self._members.pop(ROOT, ()))
         #: {place of one robot of a node with several, e.g. ``/turtle2``: (RobotType, its nodes)}
@@ -200,6 +209,9 @@ class Survey:
             return any(fnmatchcase(name, pattern) for pattern in self._ignore.nodes
                        if pattern.count('/') > 1)
         return self._ignore.covers(name, namespace)
+
+    def _may_be_robot(self, node: str) -> bool:
+        return not (self._ignore.is_tool(node) or self._ignored(node))
 
     def _typed_below(self) -> Iterator[str]:
         """Yield ``lab/bot1`` if a robot was started two namespaces deep."""
@@ -244,7 +256,7 @@ class Survey:
             if self._topic_types.get(topic) != TWIST or self._ignored(topic) \
                     or self._is_nested(topic) or topic.startswith(of_siblings):
                 continue
-            nodes = [node for node in nodes if not self._ignored(node)]
+            nodes = list(filter(self._may_be_robot, nodes))
             owner, name = self._owner(topic, nodes) if nodes else (None, '')
             if owner is not None:
                 self._commands.setdefault(owner, []).append(name)
@@ -271,7 +283,7 @@ class Survey:
         """Yield (velocity topic, its nodes) of the publishers or the subscribers."""
         for topic, nodes in group.items():
             if self._topic_types.get(topic) == TWIST and not self._ignored(topic):
-                yield topic, [node for node in nodes if not self._ignored(node)]
+                yield topic, list(filter(self._may_be_robot, nodes))
 
     def _reach(self, namespace: str) -> Tuple[Set[str], Set[str], Set[str]]:
         """Return where the velocity of a namespace goes: (all nodes, the last ones, topics).
@@ -405,7 +417,8 @@ class Survey:
         # mhri's own nodes are at the root, too, but not part of a robot without a namespace.
         ignored = partial(self._ignore.covers, namespace=namespace) if namespace == ROOT \
             else self._ignored
-        writers = {node for node in self._publishers.get(topic, ()) if not ignored(node)}
+        writers = {node for node in self._publishers.get(topic, ())
+                   if not (self._ignore.is_tool(node) or ignored(node))}
         # A node outside of it may follow the velocity of another robot.
         return any(
             split(node)[0] == namespace or not self._belongs_to_another(other, namespace)
@@ -433,7 +446,7 @@ class Survey:
             """Return a tuple: the smaller, the likelier."""
             full = self._full(prefix, topic)
             inside = self._is_behind(namespace, full) or namespace != ROOT and any(
-                split(node)[0] == namespace and not self._ignored(node)
+                split(node)[0] == namespace and self._may_be_robot(node)
                 for node in self._publishers.get(full, ()))
             return (inside, usual.index(topic) if topic in usual else len(usual),
                     not topic.endswith('cmd_vel'), topic.count('/'))

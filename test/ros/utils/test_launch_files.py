@@ -147,3 +147,28 @@ def test_test_nodes_have_names_of_their_own():
     names = [test.get('test-name') for path in sorted(LAUNCH.parent.glob('test/*/*/*.test'))
              for test in ElementTree.parse(str(path)).getroot().iter('test')]
     assert sorted(names) == sorted(set(names))
+
+
+def names(config):
+    """Return (full names of nodes, {parameter: value})."""
+    return sorted(nodes(config)), {name: one.value for name, one in config.params.items()}
+
+
+@pytest.mark.parametrize('path, arguments', [
+    ('mhri', ['sim:=2', 'web:=true', 'enabling:=pedal', 'voice:=ann', 'map:=m.yaml', 'drill:=x',
+              'automatic_switching:=true', 'links:=bot8=192.0.2.1:7447 bot9=192.0.2.2:7447']),
+    ('replay', ['path:=x']), ('inputs', ['inputs:=joy pedal']), ('sim', ['n:=2']),
+    ('turtlebot', ['name:=bot1']), ('links', ['links:=bot9=192.0.2.2:7447']),
+    ('link', ['side:=robot', 'name:=bot1']),
+    ('link', ['side:=robot', 'name:=bot1', 'namespace:=/']),
+    ('link', ['side:=host', 'name:=bot1', 'connect:=192.0.2.1:7447'])])
+def test_names_are_the_same_in_a_terminal_or_a_group_of_any_namespace(
+        path, arguments, monkeypatch, tmp_path):
+    file, group = LAUNCH / (path + '.launch'), tmp_path / 'group.launch'
+    plain = names(load(file, *arguments))
+    given = ''.join('<arg name="{}" value="{}"/>'.format(*one.split(':=')) for one in arguments)
+    group.write_text('<launch><group ns="lab"><include file="{}">{}</include></group>'
+                     '</launch>'.format(file, given))
+    assert plain[0] and names(load(group)) == plain
+    monkeypatch.setenv('ROS_NAMESPACE', 'tb3_0')
+    assert names(load(file, *arguments)) == plain

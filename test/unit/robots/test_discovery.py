@@ -12,7 +12,7 @@ from mhri.robots.discovery import (
     Candidate, find_candidates, IgnoreList, named_instances, parameters_of, parse_ignore_list,
     TWIST)
 
-IGNORE = IgnoreList(('/rosout', '/*/rosout', '/bot*/helper'), ('mux', 'rqt_*'))
+IGNORE = IgnoreList(('/rosout', '/*/rosout', '/bot*/helper'), ('mux', 'rqt_*'), ('rqt_*',))
 RESOURCE = os.path.join(os.path.dirname(__file__), '..', '..', '..', 'resource', 'discovery.yaml')
 
 
@@ -39,6 +39,13 @@ CASES = {
     'ignored_node_of_one_that_says_it_is_a_robot': (
         ('/bot1/base', '/bot1/helper'), {'bot1': {'robot_type': 'x'}}, (),
         [Candidate('bot1', 'x', ('/bot1/base',))]),
+    'tools_of_a_terminal_with_the_namespace_of_a_robot': (
+        ('/tb3_0/rqt_gui_py_node_1', '/lab/a/rqt_plot'), {}, (), []),
+    'a_tool_does_not_hide_others': (
+        ('/bot1/base', '/bot1/rqt_plot'), {}, (), [Candidate('bot1', None, ('/bot1/base',))]),
+    'a_tool_beside_a_robot_that_is_off': (
+        ('/bot1/rqt_plot',), {'bot1': {'robot_type': 'x'}}, (), [Candidate('bot1', 'x')]),
+    'a_multiplexer_of_its_own': (('/bot1/mux',), {}, (), [Candidate('bot1', None, ('/bot1/mux',))]),
     'name_of_mhri_itself': ((), {'mux': {'robot_type': 'x'}}, (), [Candidate(
         'mux', 'x', problem='"mux" is a name of mhri itself: choose another one')]),
     'known': (('/bot1/base', '/bot2/base'), {'bot1': {'robot_type': 'x'}}, ('bot1',),
@@ -78,7 +85,8 @@ def test_shipped_ignore_list_hides_mhri_itself_and_no_robot():
     with open(RESOURCE, encoding='utf-8') as stream:
         ignore = parse_ignore_list(stream.read(), 'discovery.yaml')
     own = state('/mux', '/rosout', '/mhri_panel', '/robot_controller/x', '/mux_in/x',
-                '/vrpn_client_node/x', '/bot1/base', '/rosbag/record')
+                '/vrpn_client_node/x', '/bot1/base', '/rosbag/record', '/tb3_0/rqt_gui_py_node_1',
+                '/tb3_0/rviz_2', '/tb3_0/record_3', '/tb3_0/rostopic_4', '/tb3_0/rosout')
     assert [item.name for item in find_candidates(own, {}, ignore)] == ['bot1']
 
 

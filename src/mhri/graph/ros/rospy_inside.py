@@ -10,6 +10,9 @@ missing ones. The transport of messages on the driving path is in
 :func:`caller_of`, :func:`listeners`, :func:`on_publisher_gone`, :func:`publisher_processes` and
 :func:`publisher_uri` identify the node at the other end of a connection, and report its loss.
 """
+import os
+import sys
+
 import rospy
 from rospy.impl.masterslave import ROSHandler
 from rospy.impl.paramserver import get_param_server_cache
@@ -148,6 +151,22 @@ def others_only(topic):
     _OTHERS_ONLY.add(rospy.names.resolve_name(topic))
 
 
+def name_in(namespace='/'):
+    """Put this program's node, with its parameters, in a namespace, whatever its caller says.
+
+    There is one of each of mhri's nodes on a master, under a fixed name. ``ROS_NAMESPACE``, set in
+    a terminal for some robot, would give it another one, and its parameters with it. Call it before
+    ``init_node``.
+
+    :returns: the namespace it would have had
+    """
+    given = rospy.get_namespace()
+    os.environ.pop('ROS_NAMESPACE', None)
+    sys.argv[:] = [word for word in sys.argv if not word.startswith('__ns:=')]
+    rospy.names._set_caller_id(namespace.rstrip('/') + '/unnamed')
+    return given
+
+
 def is_initialised():
     """Return whether ``rospy.init_node`` was called in this process."""
     return rospy.core.is_initialized()
@@ -256,7 +275,8 @@ def require(methods, names):
 require([(ROSHandler, ('getPid', 'shutdown')),
          (rospy.topics._SubscriberImpl, ('has_connection', 'remove_connection')),
          (rospy.core, ('add_preshutdown_hook', 'is_initialized',
-                       'is_shutdown_requested'))],
+                       'is_shutdown_requested')),
+         (rospy.names, ('_set_caller_id',))],
         [(rospy.topics._TopicImpl.__init__, (
             'connections', 'connection_poll', 'closed', 'resolved_name')),
          (TCPROSTransport.__init__, ('callerid_pub', 'endpoint_id', 'header'))])

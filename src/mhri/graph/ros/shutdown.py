@@ -5,6 +5,7 @@ import atexit
 import os
 import signal
 import socket
+import sys
 import threading
 
 import rospy
@@ -12,7 +13,7 @@ import rospy
 from mhri.graph.ros import log
 from mhri.graph.ros.master_watch import log_without_master
 from mhri.graph.ros.peers import limit_peers
-from mhri.graph.ros.rospy_inside import end_by_own_name, ended_by_hand
+from mhri.graph.ros.rospy_inside import end_by_own_name, ended_by_hand, name_in
 
 _ENDS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 # Maximum delay of Python's exit by a shutdown [s] (mhri.graph.ros.log ends the program itself), and
@@ -20,21 +21,24 @@ _ENDS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 _PATIENCE_S, _UNBORN_S = 10.0, 2.0
 
 
-def start_node(name, **options):
+def start_node(name, namespace='/', **options):
     """Start the node of a program: neither peers nor its log can block it, and it ends in time.
 
-    :param options: options of :func:`init_node`
+    :param namespace, options: those of :func:`init_node`
     :returns: function that returns whether it was ended by ``rosnode kill``, see
         :func:`mhri.graph.ros.rospy_inside.ended_by_hand`
     """
     limit_peers()
-    init_node(name, **options)
+    init_node(name, namespace, **options)
     log.install()
     return ended_by_hand()
 
 
-def init_node(name, **options):
+def init_node(name, namespace='/', **options):
     """Call ``rospy.init_node``; SIGINT, SIGTERM and SIGHUP then shut the node down on a thread.
+
+    :param namespace: of the node, whatever ``ROS_NAMESPACE`` says; None for a robot's node, which
+        is where it was started
 
     rospy does so in the signal handler, on the main thread. If that thread is calling the master,
     or holds a lock that a shutdown hook needs, it would deadlock; if it is about to sleep, as
@@ -66,6 +70,21 @@ def init_node(name, **options):
     end_by_own_name()
     # Python's exit must wait for a shutdown in progress. Until then the thread reads signals.
     atexit.register(lambda: begun.is_set() and over.wait(_PATIENCE_S) and receives.close())
+    given = name_in(namespace) if namespace else None
     rospy.init_node(name, disable_signals=True, **options)
+    if given and given != rospy.get_namespace():
+        _take_parameters(given + rospy.get_name().rpartition('/')[2])
     log_without_master()
     there.set()
+
+
+def _take_parameters(given):
+    """Copy the node's parameters from where a launch file set them: a limit must not get lost.
+
+    Those of the command line stay. '' is left out: what is kept for a next process begins so.
+    """
+    typed = {word[1:].partition(':=')[0] for word in sys.argv if word.startswith('_')}
+    values = rospy.get_param(given, None)
+    for key in set(values) - typed if isinstance(values, dict) else ():
+        if values[key] != '':
+            rospy.set_param('~' + key, values[key])
