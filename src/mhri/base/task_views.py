@@ -38,6 +38,12 @@ class FieldView:
     greatest: float = math.nan
     choices: Tuple[str, ...] = ()
 
+    def __post_init__(self) -> None:
+        """Make equal tasks equal: a NaN of another message equals none."""
+        if not self.is_number:
+            object.__setattr__(self, 'least', math.nan)
+            object.__setattr__(self, 'greatest', math.nan)
+
     @property
     def is_number(self) -> bool:
         """Whether its value is a number."""

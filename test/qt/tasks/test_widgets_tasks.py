@@ -130,6 +130,21 @@ def test_signs_between_groups_are_refused_in_sight_and_nothing_starts(
     assert start(page, operator) == '' and asked[0][1]['x'] == 2.0
 
 
+def test_what_is_typed_stays_when_the_tasks_are_said_again(page):
+    def heard():
+        """Return the tasks as from a message, which has NaNs of its own."""
+        return replace(TASKS, kinds=tuple(replace(kind, fields=tuple(
+            replace(row, least=float(str(row.least)), greatest=float(str(row.greatest)))
+            for row in kind.fields)) for kind in KINDS))
+    for name in ('follow', 'patrol', 'goto'):
+        page.show_tasks(heard(), [BOT], [])
+        page.choose(name)
+        some = field(page, {'follow': 'distance', 'patrol': 'rounds', 'goto': 'x'}[name])
+        some.setText('2')
+        page.show_tasks(heard(), [BOT], [])
+        assert some.isVisible() and some.text() == '2'
+
+
 def test_numbers_are_stepped_by_buttons_and_arrow_keys_within_their_limits(page, operator):
     x, speed = field(page, 'x'), field(page, 'speed')
     less, more = (next(part for part in page.findChildren(QPushButton)
