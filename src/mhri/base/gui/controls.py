@@ -217,11 +217,11 @@ class NumberField(LineField):
         return self.fontMetrics().horizontalAdvance(' ' + self._unit)
 
     def sizeHint(self):  # noqa: N802
-        """Return a width for the number and its unit, or for what an empty field shows."""
+        """Return a width for the bounds and the unit, or for what an empty field shows."""
         metrics, hint = self.fontMetrics(), super().sizeHint()
-        inside = max(metrics.horizontalAdvance(one)
-                     for one in (' -00000.00 ', self.placeholderText()))
-        hint.setWidth(inside + self._unit_width() + 4 * theme.GRID)
+        widest = max(metrics.horizontalAdvance(one) for one in (self.placeholderText(), *(
+            '{:g}.'.format(bound) + '0' * self._decimals for bound in (self._low, self._high))))
+        hint.setWidth(widest + self._unit_width() + 5 * theme.GRID)
         return hint
 
     def value(self):
