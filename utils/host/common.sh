@@ -17,7 +17,7 @@ XVFB_PID=
 PACKAGES=()
 LIBRARY=
 
-# That of a terminal in which a robot was started is not meant for the host.
+# A terminal's namespace is meant for a robot, not for the host.
 unset ROS_NAMESPACE
 
 # The system's python3 must come first: ROS is not installed for any other.

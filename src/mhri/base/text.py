@@ -47,13 +47,13 @@ def typed_number(text: str, least: float = -math.inf, greatest: float = math.inf
     :raises ValueError: it is no number, e.g. has a sign between groups of digits, or is out of
         bounds; the message quotes it and says what is expected
     """
-    plain = text.strip().replace(_MINUS, '-')
+    plain, quoted = text.strip().replace(_MINUS, '-'), tidy_text(text.strip(), 40)
     if not _NUMBER.fullmatch(plain):
         raise ValueError("'{}' is not a number: write it like 1.5, with nothing between groups of "
-                         'digits'.format(tidy_text(text.strip(), 40)))
+                         'digits'.format(quoted))
     value = float(plain.replace(',', '.'))
     if not least <= value <= greatest:
-        raise ValueError('{} is out of bounds: from {:g} to {:g}'.format(plain, least, greatest))
+        raise ValueError('{} is out of bounds: from {:g} to {:g}'.format(quoted, least, greatest))
     return value
 
 

@@ -118,14 +118,13 @@ def test_names_and_parameters_are_those_of_the_root(system, config, operator, wa
 
 def test_commands_of_a_terminal_are_not_a_robots_either(system, tmp_path):
     said = tmp_path / 'names'
-    for main in ('from mhri.nodes.mhri_task import main; main()',
-                 'from mhri.nodes import mhri_doctor as one; one._watchdogs('
-                 'type("O", (), {"robot": []}))'):
+    for name, words in (('mhri_task', ('robot1', 'goto', 'x=1', 'y=0')),
+                        ('mhri_doctor', ('robot1', '--watchdog', '--yes', '--quick'))):
         text = 'import rospy; plain = rospy.init_node\ndef init(*words, **more):\n' \
             '  plain(*words, **more)\n  open("{}", "a").write(rospy.get_name() + " ")\n' \
-            '  raise SystemExit\nrospy.init_node = init\n{}'.format(said, main)
-        process = system.start(sys.executable, '-c', text, 'robot1', 'goto', 'x=1', 'y=0',
-                               env=ROBOTS_OWN)
+            '  raise SystemExit\nrospy.init_node = init\n' \
+            'from mhri.nodes.{} import main; main()'.format(said, name)
+        process = system.start(sys.executable, '-c', text, *words, env=ROBOTS_OWN)
         process.wait(60)
     names = said.read_text().split()
     assert [name.rpartition('/')[0] for name in names] == ['', ''], names

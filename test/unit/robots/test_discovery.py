@@ -84,10 +84,11 @@ def test_shipped_ignore_list_hides_mhri_itself_and_no_robot():
     """The host's own nodes are never offered."""
     with open(RESOURCE, encoding='utf-8') as stream:
         ignore = parse_ignore_list(stream.read(), 'discovery.yaml')
-    own = state('/mux', '/rosout', '/mhri_panel', '/robot_controller/x', '/mux_in/x',
+    own = state('/mux', '/rosbridge_websocket', '/rosapi', '/bot2/rosbridge_websocket',
+                '/rosout', '/mhri_panel', '/robot_controller/x', '/mux_in/x',
                 '/vrpn_client_node/x', '/bot1/base', '/rosbag/record', '/tb3_0/rqt_gui_py_node_1',
                 '/tb3_0/rviz_2', '/tb3_0/record_3', '/tb3_0/rostopic_4', '/tb3_0/rosout')
-    assert [item.name for item in find_candidates(own, {}, ignore)] == ['bot1']
+    assert [item.name for item in find_candidates(own, {}, ignore)] == ['bot1', 'bot2']
 
 
 @pytest.mark.parametrize('text, key', [

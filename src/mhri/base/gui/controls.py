@@ -5,6 +5,8 @@
 They paint themselves, because within rqt the style belongs to rqt. Python cannot be the style
 either: PyQt may hand it the options of another control that was painted before.
 """
+from contextlib import suppress
+
 from python_qt_binding.QtCore import QEvent, QPointF, QRectF, QSize, Qt
 from python_qt_binding.QtGui import QPainter, QPainterPath, QPalette
 from python_qt_binding.QtWidgets import (
@@ -197,11 +199,11 @@ class NumberField(LineField):
         super().__init__(parent)
         self._unit, self._low, self._high = unit, low, high
         self._step, self._decimals = step, decimals
-        self._wrong = ''
+        self._wrong = False
         self.setPlaceholderText(empty)
         self._make_room()
         self.editingFinished.connect(self._on_finished)
-        self.textChanged.connect(lambda _: self._wrong and self._check())
+        self.textChanged.connect(self._on_changed)
 
     def changeEvent(self, event):  # noqa: N802
         """Follow the size of the text."""
@@ -229,10 +231,11 @@ class NumberField(LineField):
 
         :raises ValueError: it is not a number within the bounds
         """
-        self._check()
-        if self._wrong:
-            raise ValueError(self._wrong)
-        return typed_number(self.text()) if self.text().strip() else None
+        self._wrong = True
+        self.update()
+        number = typed_number(self.text(), self._low, self._high) if self.text().strip() else None
+        self._wrong = False
+        return number
 
     def set_value(self, value):
         """Show a number; None empties the field."""
@@ -240,12 +243,10 @@ class NumberField(LineField):
 
     def step(self, steps):
         """Add some steps within the bounds; an empty field begins at zero, a wrong one stays."""
-        try:
+        with suppress(ValueError):
             value = self.value()
-        except ValueError:
-            return
-        value = 0.0 if value is None else value + steps * self._step
-        self.set_value(min(self._high, max(self._low, value)))
+            value = 0.0 if value is None else value + steps * self._step
+            self.set_value(min(self._high, max(self._low, value)))
 
     def keyPressEvent(self, event):  # noqa: N802
         """Step with the arrow keys."""
@@ -255,20 +256,15 @@ class NumberField(LineField):
         else:
             super().keyPressEvent(event)
 
-    def _check(self):
-        """Find out what is wrong with the text, and show it."""
-        try:
-            if self.text().strip():
-                typed_number(self.text(), self._low, self._high)
-            self._wrong = ''
-        except ValueError as error:
-            self._wrong = str(error)
-        self.update()
+    def _on_changed(self):
+        """Show that a wrong text has become right."""
+        if self._wrong:
+            with suppress(ValueError):
+                self.value()
 
     def _on_finished(self):
-        """Show a finished number as others are shown."""
-        self._check()
-        if not self._wrong:
+        """Show a finished number as others are shown, and what is wrong as such."""
+        with suppress(ValueError):
             self.set_value(self.value())
 
     def edge_colour(self):
