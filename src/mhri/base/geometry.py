@@ -3,7 +3,7 @@
 """Positions, headings and frames in the plane: x ahead, y to the left (REP-103)."""
 from dataclasses import dataclass
 import math
-from typing import Tuple
+from typing import Any, Tuple
 
 import numpy as np
 
@@ -55,6 +55,32 @@ def into(frame: Pose, points: np.ndarray) -> np.ndarray:
     """Return points (n, 2) of the parent in the coordinates of a frame."""
     found: np.ndarray = (points - (frame.x_m, frame.y_m)) @ _turned(frame.heading_rad)
     return found
+
+
+def is_rotation(x: Any, y: Any, z: Any, w: Any) -> Any:
+    """Return whether numbers, or each row of four arrays, are the quaternion of a rotation.
+
+    Drivers that do not measure an orientation send zeros, or an angle in place of a component. The
+    length may differ from 1 by a tenth, as in numbers typed by hand, but that of a lone component
+    only by rounding.
+    """
+    squares = (x * x, y * y, z * z, w * w)
+    total = sum(squares)
+    lone = False
+    for square in squares:
+        lone = lone | (square == total)
+    return abs(total - 1.0) < 0.2 - 0.198 * lone
+
+
+def heading_of(x: float, y: float, z: float, w: float) -> float:
+    """Return the heading [rad, [-pi, pi]] of a quaternion, NaN unless it :func:`is_rotation`."""
+    return math.atan2(2.0 * (w * z + x * y), w * w + x * x - y * y - z * z) \
+        if is_rotation(x, y, z, w) else math.nan
+
+
+def rotation_words(x: float, y: float, z: float, w: float) -> str:
+    """Return a quaternion in words."""
+    return 'orientation of ({:.3g}, {:.3g}, {:.3g}, {:.3g})'.format(x, y, z, w)
 
 
 def _turned(angle_rad: float) -> np.ndarray:

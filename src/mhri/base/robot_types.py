@@ -13,6 +13,8 @@ from mhri.base.robot_hardware import (
     HardwareStopSpec, MotorPowerSpec, read_hardware_stop, read_motor_power)
 
 ODOMETRY_TYPES = ('nav_msgs/Odometry', 'turtlesim/Pose')
+#: units of a battery's charge; '': told by its values (:class:`mhri.base.battery.Charge`)
+BATTERY_UNITS = ('', 'fraction', 'percent')
 # Default time without odometry after which a robot is silent [s].
 SILENT_AFTER_S = 1.0
 # Default radius of a robot, which is the clearance that a robot on a task keeps [m].
@@ -134,6 +136,7 @@ class RobotType:
     cloud: Tuple[str, ...] = ()
     scan: Tuple[str, ...] = ()
     battery: Tuple[str, ...] = ()
+    battery_unit: str = ''
     known_by: Dict[str, str] = field(default_factory=dict)
     silent_after_s: float = SILENT_AFTER_S
     radius_m: float = RADIUS_M
@@ -249,13 +252,13 @@ def _check_instance(section: Section, robot_type: RobotType) -> None:
         raise section.error('instance', 'needs known_by, to find the others by')
 
 
-def _odometry_type(section: Section) -> str:
-    """Read the ROS type of the odometry."""
-    kind = section.text('odometry_type', 'nav_msgs/Odometry')
-    if kind not in ODOMETRY_TYPES:
-        raise section.error('odometry_type', 'expected one of {}, got {!r}'.format(
-            ', '.join(ODOMETRY_TYPES), kind))
-    return kind
+def _one_of(section: Section, key: str, words: Sequence[str]) -> str:
+    """Read one of some words; the first is the default."""
+    word = section.text(key, words[0])
+    if word not in words:
+        raise section.error(key, 'expected one of {}, got {!r}'.format(
+            ', '.join(filter(None, words)), word))
+    return word
 
 
 def _silent_after_s(section: Section) -> float:
@@ -342,7 +345,8 @@ def _known_by(section: Section) -> Dict[str, str]:
 _PARTS: Dict[str, Callable[[Section], Any]] = {
     'label': lambda section: section.text('label', ''),
     'window': lambda section: section.text('window', 'turtlebot'),
-    'odometry_type': _odometry_type,
+    'odometry_type': partial(_one_of, key='odometry_type', words=ODOMETRY_TYPES),
+    'battery_unit': partial(_one_of, key='battery_unit', words=BATTERY_UNITS),
     'silent_after_s': _silent_after_s,
     # The disc that encloses the robot.
     'radius_m': lambda section: section.number('radius_m', 0.02, 10.0, RADIUS_M),

@@ -12,6 +12,7 @@ from typing import Dict, Iterable, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
+from mhri.base.geometry import is_rotation
 
 BIN_S = 1.0 / 30.0
 LONGEST_S = 60.0
@@ -162,13 +163,12 @@ class Series:
 def roll_pitch_yaw(quaternions: np.ndarray) -> np.ndarray:
     """Return roll, pitch and yaw [rad] as an array (n, 3); rotations about z, y, x in this order.
 
-    :param quaternions: array (n, 4) of x, y, z, w; scaled to unit length; zero length, or an
-        element beyond :data:`BIGGEST`, gives NaN
+    :param quaternions: array (n, 4) of x, y, z, w; scaled to unit length; NaN for what is not a
+        rotation (:func:`mhri.base.geometry.is_rotation`)
     """
-    with np.errstate(invalid='ignore'):
-        turns = np.where(np.abs(quaternions) <= BIGGEST, quaternions, np.nan)
-    norm = np.linalg.norm(turns, axis=1, keepdims=True)
-    x, y, z, w = (turns / np.where(norm > 1e-6, norm, np.nan)).T
+    with np.errstate(invalid='ignore', over='ignore'):
+        turns = np.where(is_rotation(*quaternions.T)[:, None], quaternions, np.nan)
+    x, y, z, w = (turns / np.linalg.norm(turns, axis=1, keepdims=True)).T
     return np.column_stack((
         np.arctan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y)),
         np.arcsin(np.clip(2.0 * (w * y - z * x), -1.0, 1.0)),

@@ -12,7 +12,7 @@ from typing import Any, Dict, List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 
-from mhri.base.geometry import Pose
+from mhri.base.geometry import is_rotation, Pose
 from mhri.base.plausible import can_be, PLACE
 
 # Maximum number of frames kept: a faulty node may send an unlimited number of names.
@@ -127,9 +127,9 @@ class TfTree:
 def _matrix(numbers: Sequence[float]) -> np.ndarray:
     """Return the matrix of a transform, NaN if it is impossible."""
     x, y, z, w = numbers[3:]
-    length = math.sqrt(x * x + y * y + z * z + w * w)
-    if not (0.9 < length < 1.1 and all(can_be(PLACE, number) for number in numbers[:3])):
+    if not (is_rotation(x, y, z, w) and all(can_be(PLACE, number) for number in numbers[:3])):
         return np.full((4, 4), np.nan)
+    length = math.sqrt(x * x + y * y + z * z + w * w)
     x, y, z, w = (part / length for part in (x, y, z, w))
     return np.array((
         (1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w), numbers[0]),

@@ -5,6 +5,7 @@ import math
 from dataclasses import dataclass
 from typing import Optional, Sequence
 
+from mhri.base.geometry import Pose, rotation_words
 from mhri.base.plausible import ANGLE, ANGULAR_VELOCITY, can_be, PLACE, QUATERNION, sifted, SPEED
 from mhri.base.robot_types import SILENT_AFTER_S
 from mhri.base.views import GONE, LIVE, SILENT, WAITING
@@ -20,8 +21,9 @@ _KINDS = (SPEED, ANGULAR_VELOCITY, PLACE, PLACE, ANGLE, SPEED)
 class Motion:
     """A robot's motion by its own odometry: m/s, rad/s, m, m, rad in its ``odom`` frame.
 
-    ``lateral_mps`` is its speed to the left [m/s], for a robot that slides or can drive sideways.
-    ``problem`` names an impossible value (:mod:`mhri.base.plausible`), which is NaN here; None if
+    ``heading_rad`` is None if its odometry gives no orientation. ``lateral_mps`` is its speed to
+    the left [m/s], for a robot that slides or can drive sideways. ``problem`` names an impossible
+    value (:mod:`mhri.base.plausible`), which is NaN here, or the orientation that is none; None if
     all are possible.
     """
 
@@ -29,7 +31,7 @@ class Motion:
     angular_rad_s: float
     x_m: float = 0.0
     y_m: float = 0.0
-    heading_rad: float = 0.0
+    heading_rad: Optional[float] = 0.0
     lateral_mps: float = 0.0
     problem: Optional[str] = None
 
@@ -41,8 +43,26 @@ class Motion:
         """
         (linear, angular, x_m, y_m, heading, lateral), problem = sifted(_KINDS, values)
         _, twisted = sifted((QUATERNION,) * len(turn), turn)
-        return cls(linear, angular, x_m, y_m, math.nan if twisted else heading, lateral,
-                   problem or twisted)
+        given: Optional[float] = math.nan if twisted else heading
+        if turn and not twisted and math.isnan(heading):
+            given, problem = None, problem or rotation_words(*turn)
+        return cls(linear, angular, x_m, y_m, given, lateral, problem or twisted)
+
+    @property
+    def pose(self) -> Optional[Pose]:
+        """Its pose, None unless its heading is known and all values are possible."""
+        if self.heading_rad is None or not self.is_possible():
+            return None
+        return Pose(self.x_m, self.y_m, self.heading_rad)
+
+    @property
+    def note(self) -> str:
+        """What is wrong with it, for the operator; '' if nothing is."""
+        if not self.problem:
+            return ''
+        return 'its odometry has an impossible {}: {}'.format(
+            self.problem, 'no heading is known, its driver has to be mended'
+            if self.heading_rad is None else 'it is left out')
 
     @property
     def speed_mps(self) -> float:
@@ -50,10 +70,10 @@ class Motion:
         return math.hypot(self.linear_mps, self.lateral_mps)
 
     def is_possible(self) -> bool:
-        """Return whether all values are possible for a robot."""
+        """Return whether all values are possible for a robot; it may be without a heading."""
         return all(map(can_be, _KINDS, (
-            self.linear_mps, self.angular_rad_s, self.x_m, self.y_m, self.heading_rad,
-            self.lateral_mps)))
+            self.linear_mps, self.angular_rad_s, self.x_m, self.y_m,
+            0.0 if self.heading_rad is None else self.heading_rad, self.lateral_mps)))
 
     def is_standstill(self) -> bool:
         """Return whether the speeds are those of a robot at rest.

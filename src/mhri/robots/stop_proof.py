@@ -47,7 +47,8 @@ class PoseWatch:
         since, anchor = self._anchor
         took_s = max(0.0, now - since)
         moved_m = math.hypot(motion.x_m - anchor.x_m, motion.y_m - anchor.y_m)
-        turned_rad = abs(math.remainder(motion.heading_rad - anchor.heading_rad, 2.0 * math.pi))
+        turned_rad = 0.0 if motion.heading_rad is None or anchor.heading_rad is None else abs(
+            math.remainder(motion.heading_rad - anchor.heading_rad, 2.0 * math.pi))
         rests = (moved_m <= JITTER_M + STANDSTILL_MPS * took_s
                  and turned_rad <= JITTER_RAD + STANDSTILL_RAD_S * took_s)
         if not rests or took_s >= POSE_WINDOW_S:

@@ -8,7 +8,7 @@ from typing import Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
 
-from mhri.base.geometry import composed, Pose
+from mhri.base.geometry import beside, Pose
 from mhri.base.opencv import cv2
 from mhri.base.robot_types import SILENT_AFTER_S
 from mhri.base.views import PROOF_STOPPED, ProofView
@@ -185,19 +185,19 @@ class RobotSurvey:
 
     def _add(self, motion: Motion) -> None:
         self._anchor = motion
-        pose = Pose(motion.x_m, motion.y_m, motion.heading_rad)
+        x_m, y_m = motion.x_m, motion.y_m
         if self._origin is not None:
-            pose = composed(self._origin, pose)
+            x_m, y_m = beside(self._origin, x_m, y_m)
         elif self.placed:
             return
         if not self.pieces:
             self.pieces.append([])
         piece = self.pieces[-1]
-        if piece and math.hypot(pose.x_m - piece[-1][0], pose.y_m - piece[-1][1]) > _LEAP_M \
+        if piece and math.hypot(x_m - piece[-1][0], y_m - piece[-1][1]) > _LEAP_M \
                 + _STEP_M:
             piece = []
             self.pieces.append(piece)
-        piece.append((pose.x_m, pose.y_m))
+        piece.append((x_m, y_m))
 
     def end(self, length_s: float) -> None:
         """Handle the end of the session."""

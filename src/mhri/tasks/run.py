@@ -54,8 +54,9 @@ class Facts:
     """The state of a robot at one instant, in addition to its :class:`Senses`.
 
     ``answers`` is whether the mux answers, ``known`` whether it has the robot, ``obeys`` and
-    ``stands`` what it reports about it. Ages [s] are None before the first data; ``place_age_s`` is
-    that of its place, 0 if the task needs none or it does not age, None if it is not placed;
+    ``stands`` what it reports about it. Ages [s] are None before the first data, ``odometry_note``
+    is what is wrong with the odometry, '' if nothing; ``place_age_s`` is that of its place, 0 if
+    the task needs none or it does not age, None if it is not placed;
     ``place_text`` describes it; ``settling`` is a sentence if its place was just corrected by a
     large distance, else ''. ``has_laser`` is false for types without laser and depth camera, which
     have no brake; ``looks`` is the field of view of that sensor, ``unplaced`` whether the position
@@ -69,6 +70,7 @@ class Facts:
     obeys: str = ''
     stands: str = ''
     odometry_age_s: Optional[float] = None
+    odometry_note: str = ''
     place_age_s: Optional[float] = 0.0
     place_text: str = ''
     settling: str = ''
@@ -167,7 +169,7 @@ class RobotRun:
         if not facts.known or facts.stands == reasons.NOT_HEARD:
             return LOST, 'the drive service no longer hears it'
         if facts.odometry_age_s is None or facts.odometry_age_s > OLD_S:
-            return LOST, 'nothing from its odometry for {:.1f} s'.format(
+            return LOST, facts.odometry_note or 'nothing from its odometry for {:.1f} s'.format(
                 facts.odometry_age_s or 0.0)
         if _unplaced(facts):
             return LOST, 'its place is no longer known: ' + facts.place_text
@@ -288,7 +290,8 @@ def missing_senses(facts: Facts) -> str:
     """Describe the first of the missing data, '' if complete."""
     for missing, words in (
             (not facts.known, 'the drive service to know it'),
-            (facts.odometry_age_s is None or facts.odometry_age_s > OLD_S, 'its odometry'),
+            (facts.odometry_age_s is None or facts.odometry_age_s > OLD_S,
+             'its odometry' + (facts.odometry_note and ': ' + facts.odometry_note)),
             (_unplaced(facts), 'its place: ' + facts.place_text),
             (facts.has_laser and (facts.scan_age_s is None or facts.scan_age_s > SCAN_OLD_S),
              'its laser or depth camera'),

@@ -15,7 +15,7 @@ from tf2_msgs.msg import TFMessage
 
 from mhri.base.config import ConfigError
 from mhri.map.grid import GridError
-from mhri.map.ros.map_source import grid_message, load_map, MapSource
+from mhri.map.ros.map_source import grid_message, grid_of_message, load_map, MapSource
 from mhri.robots.ros.tf_feed import TfFeed, transforms
 
 YAML = 'image: {}\nresolution: 0.05\norigin: [-1, -2, 0.5]\nnegate: 0\n' \
@@ -146,3 +146,15 @@ def test_bytes_that_are_no_tf_change_nothing(deliver, buff):
     feed.open()
     deliver('/tf', buff)
     assert not feed.knows('map')
+
+
+@pytest.mark.parametrize('z, heading', [(0.0, 0.0), (1.0, math.pi), (0.5, None)])
+def test_a_map_without_an_orientation_is_unturned_and_an_impossible_one_is_none(z, heading):
+    message = OccupancyGrid(data=np.zeros(4, np.int8))
+    message.info.resolution, message.info.width, message.info.height = 0.05, 2, 2
+    message.info.origin.orientation.z = z
+    if heading is None:
+        with pytest.raises(GridError):
+            grid_of_message(message)
+    else:
+        assert grid_of_message(message).origin.heading_rad == pytest.approx(heading)

@@ -120,13 +120,8 @@ def test_angles_of_a_quaternion(degrees):
     (cr, sr), (cp, sp), (cy, sy) = ((math.cos(v), math.sin(v)) for v in (roll, pitch, yaw))
     quaternion = np.array([[sr * cp * cy - cr * sp * sy, cr * sp * cy + sr * cp * sy,
                             cr * cp * sy - sr * sp * cy, cr * cp * cy + sr * sp * sy]])
-    for scale in (1.0, 3.0):
-        found = np.degrees(roll_pitch_yaw(quaternion * scale))[0]
-        assert list(found) == pytest.approx(degrees, abs=1e-4)
-
-
-def test_a_quaternion_of_no_length_is_no_angle():
-    assert np.isnan(roll_pitch_yaw(np.zeros((2, 4)))).all()
+    found = np.degrees(roll_pitch_yaw(quaternion))[0]
+    assert list(found) == pytest.approx(degrees, abs=1e-4)
 
 
 @pytest.mark.parametrize('low, high, limits', [

@@ -5,6 +5,7 @@ import math
 
 import pytest
 
+from mhri.base.geometry import Pose
 from mhri.base.views import GONE, LIVE, SILENT, WAITING
 from mhri.robots.link import link_note, link_state, Motion
 
@@ -53,6 +54,13 @@ def test_a_heading_is_as_good_as_the_quaternion_it_is_from():
     assert good.is_possible() and good.heading_rad == 0.5
     assert math.isnan(bad.heading_rad) and bad.linear_mps == 0.3
     assert '1e+30' in bad.problem and not bad.is_standstill()
+    assert good.pose == Pose(1.0, 2.0, 0.5) and bad.pose is None
+
+
+def test_odometry_without_an_orientation_shows_a_standstill_but_no_pose():
+    rests = Motion.reported(0.0, 0.0, 1.0, 2.0, math.nan, 0.0, turn=(0.0, 0.0, 0.0, 0.0))
+    assert rests.is_standstill() and rests.pose is None
+    assert '(0, 0, 0, 0)' in rests.note and not Motion(0.0, 0.0).note
 
 
 @pytest.mark.parametrize('age_s, connections, state', [

@@ -11,6 +11,7 @@ from mhri.robots.link import Motion, STANDSTILL_MPS, STANDSTILL_RAD_S
 from mhri.robots.stop_proof import OdometryWitness, PoseWatch, ROW_S, StopProof, TIMEOUT_S
 
 GRID_M = 5_900_000.0  # as in a national grid
+UNTURNED = Motion(0.0, 0.0, 0.0, 0.0, None)
 REST, MOVES, NAN = Motion(0.0, 0.0), Motion(0.3, 0.0), Motion(float('nan'), 0.0)
 
 
@@ -36,6 +37,11 @@ CASES = {
     'stopped': (STOPS, 0.34, PROOF_STOPPED, 'stopped in 220 ms'),
     'three_readings_in_a_moment_are_no_proof': (
         [(0.1, REST), (0.101, REST), (0.102, REST)], 0.13, PROOF_WAITING, 'stopping'),
+    'without_an_orientation': (every(0.02, 0.34, UNTURNED), 0.34, PROOF_STOPPED,
+                               'stopped in 20 ms'),
+    'without_an_orientation_it_moves': (
+        [(0.02 * number, Motion(0.0, 0.0, 0.004 * number, 0.0, None)) for number in range(1, 30)],
+        0.58, PROOF_WAITING, 'stopping'),
     'in_a_national_grid': (every(0.02, 0.34, Motion(0.0, 0.0, GRID_M)), 0.34, PROOF_STOPPED,
                            'stopped in 20 ms'),
     'two_readings_are_no_proof': ([(0.1, REST), (0.3, REST)], 0.33, PROOF_WAITING, 'stopping'),

@@ -199,6 +199,7 @@ ENDINGS = [
     (dict(obeys='operator'), TAKEN_OVER, ''), (dict(obeys=''), LOST, ''),
     (dict(stands='not_heard'), LOST, ''), (dict(known=False), LOST, ''),
     (dict(odometry_age_s=0.6), LOST, '0.6 s'),
+    (dict(odometry_age_s=0.6, odometry_note='why it is wrong'), LOST, 'why it is wrong'),
     (dict(place_age_s=0.7, place_text='why it is old'), LOST, 'why it is old'),
     (dict(place_age_s=None, place_text='why it has none'), LOST, 'why it has none'),
     (dict(battery=0.1), FAILED, '10 %')]

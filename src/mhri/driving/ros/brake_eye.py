@@ -5,7 +5,6 @@ from contextlib import nullcontext
 import threading
 import time
 
-from mhri.base.geometry import Pose
 from mhri.base.names import topic_of
 from mhri.driving.stick_brake import StickBrake
 from mhri.graph.ros.messages import MessageMissing
@@ -80,9 +79,9 @@ class BrakeEye:
             return
         self._pose_at = now
         reading = self._read_odometry(message)
-        if reading is not None and reading.motion.is_possible():
-            motion, header, self._mounts.frames, source = reading
-            pose = Pose(motion.x_m, motion.y_m, motion.heading_rad)
+        pose = reading and reading.motion.pose
+        if pose is not None:
+            _, header, self._mounts.frames, source = reading
             if header is not None:
                 self._track.add(header[1], pose, now)
             anew = self._track.follow(pose, now, source, header[1] if header else 0.0)

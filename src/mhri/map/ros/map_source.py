@@ -33,9 +33,11 @@ def grid_of_message(message):
 
     :raises GridError: it is invalid; the text names the problem
     """
-    info, place = message.info, message.info.origin.position
-    return grid_of(info.resolution, Pose(place.x, place.y, yaw_of(info.origin.orientation)),
-                   info.width, info.height, message.data)
+    info, place, turn = message.info, message.info.origin.position, message.info.origin.orientation
+    # Many leave the orientation at zeros, which is an unturned map for every program that shows it.
+    heading_rad = yaw_of(turn) if any((turn.x, turn.y, turn.z, turn.w)) else 0.0
+    return grid_of(info.resolution, Pose(place.x, place.y, heading_rad), info.width, info.height,
+                   message.data)
 
 
 def map_stream():

@@ -9,6 +9,7 @@ from geometry_msgs.msg import Twist
 import rospy
 from sensor_msgs.msg import Joy
 
+from mhri.base.geometry import heading_of
 from mhri.base.limits import Velocity
 
 # Length, then the message.
@@ -58,9 +59,8 @@ def from_twist(message):
 
 
 def yaw_of(quaternion):
-    """Return the heading [rad, (-pi, pi]] of an orientation about the vertical axis."""
-    x, y, z, w = quaternion.x, quaternion.y, quaternion.z, quaternion.w
-    return math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
+    """Return the heading of an orientation about the vertical axis [rad], NaN if it has none."""
+    return heading_of(quaternion.x, quaternion.y, quaternion.z, quaternion.w)
 
 
 def turn_of(heading_rad):

@@ -136,7 +136,7 @@ class RobotMonitor:
             'name': self.name, 'type_label': self.robot_type.label,
             'window': self.robot_type.window, 'link': state, 'age_s': age,
             'note': link_note(state, age, self._heard_wall, now - self.added_at) or warning
-            or self._streams[FETCHED].value() or '',
+            or self._streams[FETCHED].value() or (motion.note if motion else ''),
             'figures': figures, 'slow': bool(warning), **_numbers(motion),
             'battery': self._streams[BATTERY_CHARGE].value(), 'proof': proof,
             # A live robot with impossible values may well be moving.
@@ -177,4 +177,5 @@ def _numbers(motion):
     """Return the numbers of a view from a :class:`Motion`, as {key: value}."""
     keys = 'linear_mps', 'angular_rad_s', 'lateral_mps', 'heading_rad', 'x_m', 'y_m'
     values = {key: getattr(motion, key) for key in keys if motion is not None}
-    return {key: value for key, value in values.items() if math.isfinite(value)}
+    return {key: value for key, value in values.items()
+            if value is not None and math.isfinite(value)}

@@ -11,17 +11,16 @@ import rospy
 from sensor_msgs.msg import BatteryState
 from std_msgs.msg import String
 
-from mhri.base.geometry import Pose
+from mhri.base.battery import Charge
+from mhri.base.geometry import Pose, rotation_words
 from mhri.base.names import topic_of
-from mhri.base.plausible import BATTERY, can_be, PLACE, QUATERNION, sifted
+from mhri.base.plausible import PLACE, sifted
 from mhri.graph.ros.messages import message_class, MessageMissing, read_field
 from mhri.graph.ros.stream import Stream
 from mhri.msg import LinkControl
 from mhri.robots.figures import FETCHING, FETCHING_WORD, FIGURES, read_figures
 from mhri.robots.ros.convert import yaw_of
 from mhri.robots.ros.odometry import odometry_of
-
-_POSE_KINDS = (PLACE,) * 2 + (QUATERNION,) * 4
 
 
 class StreamRow(NamedTuple):
@@ -93,16 +92,9 @@ def _odometry(_, kind):
     return (kind.odometry, *odometry_of(kind))
 
 
-def battery_fraction(message):
-    """Return the charge in a ``sensor_msgs/BatteryState`` as a fraction in [0, 1], or None.
-
-    The message specifies a fraction. Percent is accepted, too, and a little over 1, which drivers
-    that divide by a nominal voltage report (turtlebot3_core does).
-    """
-    value = message.percentage
-    if not can_be(BATTERY, value):
-        return None
-    return min(1.0, value / 100.0 if value > 1.5 else value)
+def _battery(_, kind):
+    charge = Charge(kind.battery_unit)
+    return kind.battery, BatteryState, lambda message, note: charge.read(message.percentage)
 
 
 def _hardware_stop(_, kind):
@@ -121,11 +113,11 @@ def _hardware_stop(_, kind):
 def _read_pose(message, note):
     """Return the :class:`Pose` in a ``geometry_msgs/PoseStamped``, NaN for impossible values."""
     place, turn = message.pose.position, message.pose.orientation
-    (x, y, *turn_values), problem = sifted(
-        _POSE_KINDS, (place.x, place.y, turn.x, turn.y, turn.z, turn.w))
-    if problem:
-        note(problem)
-    return Pose(x, y, math.nan if any(map(math.isnan, turn_values)) else yaw_of(turn))
+    (x, y), problem = sifted((PLACE,) * 2, (place.x, place.y))
+    heading_rad = yaw_of(turn)
+    if problem or math.isnan(heading_rad):
+        note(problem or rotation_words(turn.x, turn.y, turn.z, turn.w))
+    return Pose(x, y, heading_rad)
 
 
 def _read_fetching(message, _):
@@ -135,9 +127,8 @@ def _read_fetching(message, _):
 
 #: :class:`mhri.robots.ros.odometry.Reading`
 ODOMETRY = StreamRow('odometry', _odometry)
-#: charge in [0, 1]
-BATTERY_CHARGE = StreamRow('battery', lambda _, kind: (
-    kind.battery, BatteryState, lambda message, note: battery_fraction(message)))
+#: charge in [0, 1], None if unknown
+BATTERY_CHARGE = StreamRow('battery', _battery)
 #: whether the robot's own emergency stop holds it; valid while a publisher is connected, since
 #: many publish only once, latched
 HARDWARE_STOP = StreamRow('hardware_stop', _hardware_stop)

@@ -105,11 +105,11 @@ class Film:
         """Yield (robot, (its pose on the map, whether it is lost)) of the robots on the map."""
         for robot in self._map.names:
             motion, origin = self._motion(robot), self._origin(robot)
-            if motion is None or origin is None:
+            if motion is None or motion.pose is None or origin is None:
                 continue
             recorded = self._newest[self._builder.odometry_topic(robot)]
-            pose = Pose(motion.x_m, motion.y_m, motion.heading_rad)
-            yield robot, (composed(origin, pose), (now_ns - recorded.time_ns) / _NS > OLD_S)
+            yield robot, (composed(origin, motion.pose),
+                          (now_ns - recorded.time_ns) / _NS > OLD_S)
 
     def _origin(self, robot):
         """Return the origin of a robot's odometry in the frame of the map, None if unknown."""

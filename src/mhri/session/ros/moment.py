@@ -74,11 +74,10 @@ class Moment:
             except (MessageMissing, genpy.DeserializationError) as error:
                 rospy.logdebug('%s: %s', source.fields['topic'], error)
                 continue
-            motion = MOTIONS[source.fields['type']](message)
-            if not motion.is_possible():
-                continue
-            frame = message.header.frame_id if message._has_header else ''
-            return Pose(motion.x_m, motion.y_m, motion.heading_rad), frame or robot + '/odom'
+            pose = MOTIONS[source.fields['type']](message).pose
+            if pose is not None:
+                frame = message.header.frame_id if message._has_header else ''
+                return pose, frame or robot + '/odom'
         return None
 
     def _origins(self):

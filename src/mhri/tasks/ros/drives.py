@@ -83,7 +83,5 @@ def _pose_of(kind):
     def read_odometry(message):
         """Return the pose of an odometry message."""
         motion = MOTIONS[kind](message)
-        if motion is None or not motion.is_possible():
-            return None
-        return Pose(motion.x_m, motion.y_m, motion.heading_rad)
+        return motion and motion.pose
     return read_odometry

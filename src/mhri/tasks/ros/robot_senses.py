@@ -3,7 +3,6 @@
 """Collects one robot's sensor data for its task: odometry, motion capture, laser, battery."""
 import time
 
-from mhri.base.geometry import Pose
 from mhri.base.names import topic_of
 from mhri.graph.ros.refusals import Refusals
 from mhri.map.places import Odometry, OLD_S
@@ -34,7 +33,7 @@ class RobotSenses:
         self.trail = Trail()
         # Pose by odometry, the newest :class:`Odometry`, and the name of its frame.
         self.pose = self.odometry = None
-        self.odometry_frame = ''
+        self.odometry_frame = self._odometry_note = ''
         # By motion capture: (pose, time of receipt [s]).
         self.seen_at = None
         self._streams = RobotStreams(name, robot_type, (ODOMETRY, MOCAP, SCAN, BATTERY_CHARGE),
@@ -48,15 +47,16 @@ class RobotSenses:
         self._track = PoseTrack(robot_type.limits.linear_mps)
         self._surroundings = Surroundings(self.body.radius_m)
         self._unplaced = Unplaced()
-        self._streams.open(ODOMETRY, MOCAP)
+        # The battery from the start: its first values may be all that tells their unit.
+        self._streams.open(ODOMETRY, MOCAP, BATTERY_CHARGE)
 
     def known_s(self):
         """Return how long the robot has been known [s]."""
         return self._clock() - self._begun_at
 
     def open(self):
-        """Subscribe to laser or depth camera, and battery (blocking: calls the master)."""
-        self._streams.open(SCAN, BATTERY_CHARGE)
+        """Subscribe to laser or depth camera (blocking: calls the master)."""
+        self._streams.open(SCAN)
         if self._depth is None and self.has_eye and not self.has_laser:
             # Imported late: it loads OpenCV, which would delay a start during a drive.
             from mhri.sensors.ros.depth_scans import DepthScans
@@ -85,8 +85,10 @@ class RobotSenses:
     def look(self):
         """Process the messages received since the last call."""
         newest = self._streams[ODOMETRY].take()
-        if newest is not None and newest.value.motion.is_possible():
-            self._go(newest.value, newest.at_s)
+        if newest is not None:
+            self._odometry_note = newest.value.motion.note
+            if newest.value.motion.pose is not None:
+                self._go(newest.value, newest.at_s)
         captured = self._streams[MOCAP].take()
         if captured is not None and captured.value.is_finite():
             self.seen_at = captured[:2]
@@ -95,7 +97,7 @@ class RobotSenses:
 
     def _go(self, reading, heard_at):
         motion, header, frames, source = reading
-        self.pose = Pose(motion.x_m, motion.y_m, motion.heading_rad)
+        self.pose = motion.pose
         if self._track.follow(self.pose, heard_at, source, header[1] if header else 0.0):
             self._surroundings.clear()
             self._scan_at = None
@@ -162,6 +164,7 @@ class RobotSenses:
         """Return {name in :class:`Facts`: age [s], None before the first data}."""
         now = self._clock()
         return dict(odometry_age_s=None if self.odometry is None else now - self.odometry.at_s,
+                    odometry_note=self._odometry_note,
                     scan_age_s=None if self._scan_at is None else now - self._scan_at)
 
     @property

@@ -10,9 +10,9 @@ Interfaces (global names; SI units):
   that their own navigation drives; with zeros for 0.6 s after it), ``/mux_in/accessory``
   (``mhri/Accessory``, as tasks ask for) and ``/mhri_tasks/list`` (``mhri/TaskList``, latched, on
   change)
-- subscribes ``/mux/state`` (``mhri/DriveState``), only from the mux in force; odometry and
-  ``/vrpn_client_node/<robot>/pose`` of every robot of the mux; laser or depth camera, and battery,
-  of robots on a task
+- subscribes ``/mux/state`` (``mhri/DriveState``), only from the mux in force; odometry, battery
+  and ``/vrpn_client_node/<robot>/pose`` of every robot of the mux; laser or depth camera of robots
+  on a task
 - keeps the places of robots: :mod:`mhri.map.ros.place_keeper`
 
 The action server has its own lock, held while it calls :meth:`Tasks._on_goal`: it is never called

@@ -100,7 +100,7 @@ class Recording:
                                    if pose is not None})
                     continue
                 name, motion = robots[recorded.connection.topic], builder.motion(recorded)
-                if motion is not None and motion.is_possible():
+                if motion is not None and motion.pose is not None:
                     tracks[name].append((recorded.time_ns, motion, places.get(name)))
         except DAMAGED as error:
             self._session.problems.append('a bag is damaged: {}'.format(error))
@@ -114,7 +114,7 @@ class Recording:
             at_s = round((time_ns - self._bags.start_ns) / _NS, 2)
             placed = placed or origin
             row = [None] * 3 if placed is None else _rounded(composed(
-                placed, Pose(motion.x_m, motion.y_m, motion.heading_rad)))
+                placed, motion.pose))
             row += [round(motion.linear_mps, 2), round(motion.angular_rad_s, 2)]
             yield [at_s] if row == before else [at_s, *row]
             before = row
