@@ -23,6 +23,7 @@ from mhri.camera.depth_codec import encode_depth  # noqa: E402
 from mhri.camera.depth_colour import DepthColour  # noqa: E402
 from mhri.camera.image_message import COMPRESSED_TYPE, RAW_TYPE  # noqa: E402
 from mhri.camera.ros.pictures import read_picture  # noqa: E402
+from mhri.camera.shades import Shades  # noqa: E402
 from support.pictures import colour_picture, compressed_message  # noqa: E402
 from support.pictures import depth_picture, raw_message  # noqa: E402
 from support.ros_system import System, wait_for  # noqa: E402
@@ -76,7 +77,7 @@ def bench_codecs(count):
         'picture', 'shown at', 'kB', 'p50', 'p90', 'p99', 'beside', 'p50', 'ratio', 'goal'))
     for name, kind, message_type, data, other_name, other in codecs():
         for view in (None, THUMBNAIL):
-            colour = DepthColour()
+            colour = DepthColour() if kind == 'depth' else Shades()
             found = times(lambda: read_picture(kind, message_type, data, view, colour, 0.0), count)
             beside = times(other, count)[count // 2]
             goal = '' if view or name not in GOALS_MS else '<= {} {}'.format(

@@ -7,7 +7,6 @@ people with any of the usual colour deficiencies can read it, and unlike cividis
 grey. Invalid pixels are hatched because for some people any plain grey resembles a colour of the
 map.
 """
-import math
 from typing import Optional, Tuple
 
 import numpy as np
@@ -17,7 +16,6 @@ from mhri.camera.images import Range
 from mhri.camera.range_follower import RangeFollower
 
 MIN_SPAN_M = 0.5
-_SAMPLES = 20_000
 _HATCH = ((96, 96, 96), (160, 160, 160))
 _HATCH_PERIOD = 8
 
@@ -55,7 +53,7 @@ class DepthColour:
         :param depth_m: float32 (h, w), NaN invalid
         :param now: time of receipt [s], for the smoothing
         """
-        depth_range = self._follow(depth_m, now)
+        depth_range = self._follower.follow(depth_m, now)
         if depth_range is None:
             return self._hatched(depth_m.shape).copy(), None
         near, far = depth_range
@@ -66,11 +64,6 @@ class DepthColour:
         rgb = cv2.applyColorMap(shade, _TABLE)
         cv2.copyTo(self._hatched(depth_m.shape), cv2.bitwise_not(valid), rgb)
         return rgb, depth_range
-
-    def _follow(self, depth_m: np.ndarray, now: float) -> Optional[Range]:
-        """Return the range after one more picture."""
-        step = max(1, math.isqrt(depth_m.size // _SAMPLES))
-        return self._follower.follow(depth_m[::step, ::step], now)
 
     def _hatched(self, shape: Tuple[int, ...]) -> np.ndarray:
         """Return a picture filled with the hatch."""

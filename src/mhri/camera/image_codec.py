@@ -18,6 +18,8 @@ from mhri.camera.images import check_size, fit, FrameError, Size
 from mhri.camera.jpeg import decode_jpeg
 
 _PNG = b'\x89PNG\r\n\x1a\n'
+# Offset of its number of bits per sample, before its kind of pixels, and the colour bit of that.
+_PNG_DEPTH, _PNG_COLOURS = 24, 2
 _JPEG = b'\xff\xd8\xff'
 _REDUCED = {1: cv2.IMREAD_COLOR, 2: cv2.IMREAD_REDUCED_COLOR_2, 4: cv2.IMREAD_REDUCED_COLOR_4,
             8: cv2.IMREAD_REDUCED_COLOR_8}
@@ -36,7 +38,8 @@ def decode_compressed(fmt: str, data: Data,
     :param fmt: its ``format``
     :param data: its ``data``, bytes-like
     :param view: room for the picture (width, height) [pixels], None for the full size
-    :returns: (rgb uint8 (h, w, 3), (width, height) as sent, 'jpeg' or 'png')
+    :returns: (RGB (h, w, 3), uint8 or, in a png of 16 bits, uint16, or its grey (h, w);
+        (width, height) as sent; 'jpeg' or 'png')
     :raises FrameError: not a jpeg or png, truncated, corrupted, or of an absurd size
     """
     kind, full = read_size(data, fmt)
@@ -72,8 +75,12 @@ def _decode_colours(fmt: str, kind: str, data: Data, full: Size, factor: int) ->
     rgb = decode_jpeg(data, full, factor) if kind == 'jpeg' else None
     if rgb is None:
         # Ignore the orientation in the data (EXIF): a robot's camera is shown as it is mounted.
-        rgb = decode_with_opencv(kind, data, _REDUCED[factor] | cv2.IMREAD_IGNORE_ORIENTATION)
-        if kind == 'jpeg' or not _is_rgb_order(fmt):
+        flags = _REDUCED[factor] | cv2.IMREAD_IGNORE_ORIENTATION
+        if kind == 'png' and data[_PNG_DEPTH] == 16:
+            grey = not data[_PNG_DEPTH + 1] & _PNG_COLOURS
+            flags = cv2.IMREAD_ANYDEPTH | (cv2.IMREAD_GRAYSCALE if grey else cv2.IMREAD_COLOR)
+        rgb = decode_with_opencv(kind, data, flags)
+        if rgb.ndim > 2 and (kind == 'jpeg' or not _is_rgb_order(fmt)):
             # In place: a new array of this size takes ten times as long, in page faults.
             cv2.cvtColor(rgb, cv2.COLOR_BGR2RGB, rgb)
     return rgb

@@ -36,6 +36,14 @@ def read_compressed(data: Data) -> Tuple[str, memoryview]:
     return wire.text(), wire.array()
 
 
+def has_content(kind: str, data: Data) -> bool:
+    """Return whether a message of a type has content: a compressed picture may be empty."""
+    try:
+        return kind != COMPRESSED_TYPE or len(read_compressed(data)[1]) > 0
+    except FrameError:
+        return False
+
+
 def read_raw(data: Data) -> RawImage:
     """Return the :class:`RawImage` of a serialised ``sensor_msgs/Image``.
 

@@ -34,7 +34,8 @@ class Frame:
     to show (depth: coloured already). ``depth_m``: float32 (h, w), distance along the optical axis
     [m], NaN if invalid; None for 'rgb'. ``full_size`` is (width, height) of the picture as sent
     [pixels]; ``depth_range_m`` the (near, far) of the colours [m] or None (rgb, or no valid pixel
-    yet). ``received_s``: time of receipt [s, monotonic].
+    yet). ``received_s``: time of receipt [s, monotonic]. ``grey_range``: the values of grey in more
+    than 8 bits that are shown as black and as white, else None.
     """
 
     kind: str
@@ -43,6 +44,7 @@ class Frame:
     full_size: Size = (0, 0)
     depth_range_m: Optional[Range] = None
     received_s: float = 0.0
+    grey_range: Optional[Range] = None
 
 
 @dataclass(frozen=True)
@@ -56,7 +58,7 @@ class StreamStatus:
     the reason why no picture is received; '' without a problem. ``stale``: the newest good picture
     is older than the newest bad one, or than ``old_after_s`` [s], which is longer for a limited
     stream. ``thinned`` is the limit and its reason, '' without a limit. ``detail`` is the problem
-    in the terms of ROS, or ''.
+    in the terms of ROS, or ''. ``source`` is the received topic, with better ones that are silent.
     """
 
     transport: str = ''
@@ -70,6 +72,7 @@ class StreamStatus:
     thinned: str = ''
     old_after_s: float = OLD_AFTER_S
     detail: str = ''
+    source: str = ''
 
 
 def check_size(what: str, width: int, height: int) -> None:

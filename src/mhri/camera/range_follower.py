@@ -10,6 +10,7 @@ from mhri.camera.images import Range
 
 SMOOTH_S = 1.0
 _PERCENT = (2, 98)
+_SAMPLES = 20_000
 
 
 class RangeFollower:
@@ -28,10 +29,14 @@ class RangeFollower:
     def follow(self, values: np.ndarray, now: float) -> Optional[Range]:
         """Return the range after some more values; None before the first.
 
-        :param values: any number of them, NaN if invalid
+        :param values: any number of them, of which those of a picture are sampled; NaN or infinite
+            if invalid
         :param now: time of receipt [s], for the smoothing
         """
-        values = values[values == values]
+        if values.ndim > 1:
+            step = max(1, math.isqrt(values.size // _SAMPLES))
+            values = values[::step, ::step]
+        values = values[np.isfinite(values)]
         if len(values) == 0:
             return self._range
         low, high = (float(value) for value in np.percentile(values, _PERCENT))

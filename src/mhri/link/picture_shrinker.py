@@ -62,7 +62,8 @@ class PictureShrinker:
 
 def _decoded(coded: 'np.ndarray') -> Optional['np.ndarray']:
     try:
-        pixels: Optional['np.ndarray'] = cv2.imdecode(coded, cv2.IMREAD_COLOR)
+        pixels: Optional['np.ndarray'] = cv2.imdecode(
+            coded, cv2.IMREAD_COLOR | cv2.IMREAD_ANYDEPTH)
     except cv2.error:  # too many pixels
         return None
-    return pixels
+    return pixels if pixels is not None and pixels.dtype == np.uint8 else None

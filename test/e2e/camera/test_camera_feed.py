@@ -84,6 +84,27 @@ class CameraFeedTest(CameraCase):
         feed.choose('auto')
         wait_for(lambda: feed.take() and feed.status().transport == 'jpeg', 10.0, 'auto again')
 
+    def test_the_next_transport_where_the_best_is_silent_and_back_when_it_speaks(self):
+        """A publisher that cannot compress an encoding advertises it all the same."""
+        for name, kind, ending, packed, pixels, transport in (
+                ('mute', 'rgb', '/compressed', jpeg(), raw('rgb8', RGB), 'jpeg'),
+                ('deep', 'depth', '/compressedDepth', compressed_depth(MM, 'png'),
+                 raw('16UC1', MM), 'compressedDepth png')):
+            with self.subTest(name):
+                topic = '/{}/camera/image_raw'.format(name)
+                self.begin(Camera(topic, pixels))
+                silent = self.begin(Camera(topic + ending, CompressedImage(format='jpeg')))
+                feed = self.feed(name, kind)
+                begun = time.monotonic()
+                wait_for(lambda: feed.take() and feed.status().transport == 'raw', 10.0, 'raw')
+                measured('silent transport until the next one', time.monotonic() - begun)
+                wait_for(lambda: topic + ending in feed.status().source, 10.0, 'why')
+                silent.message = packed
+                wait_for(lambda: feed.take() and feed.status().transport == transport, 10.0,
+                         'compressed, since it speaks')
+                wait_for(lambda: feed.status().source == topic + ending, 10.0, 'one at a time')
+                feed.close()
+
     def test_nobody_and_the_wrong_type(self):
         nothing = self.feed('nothing')
         wait_for(lambda: nothing.status().detail == 'nobody publishes /nothing/camera/image_raw',

@@ -27,6 +27,19 @@ while rest:
     rospy.rostime.wallsleep(0.05)
 '''
 
+# Is a camera on another master whose compressed pictures are only advertised.
+CAMERA = '''
+import rospy
+from sensor_msgs.msg import CompressedImage, Image
+rospy.init_node('thermal_camera', disable_signals=True)
+empty = rospy.Publisher('/bot1/raspicam_node/image/compressed', CompressedImage, queue_size=1)
+raw = rospy.Publisher('/bot1/raspicam_node/image', Image, queue_size=1)
+while True:
+    empty.publish(CompressedImage(format='jpeg'))
+    raw.publish(Image(height=2, width=2, encoding='mono16', step=4, data=bytes(8)))
+    rospy.rostime.wallsleep(0.1)
+'''
+
 
 @pytest.fixture(scope='module')
 def lab():
@@ -123,6 +136,19 @@ def test_pictures_only_for_those_who_look(lab):
     assert listeners_of_camera(lab) == 1
     view.unregister()
     wait_for(lambda: listeners_of_camera(lab) == 0, LONG_S, 'the camera to be left alone')
+
+
+def test_a_raw_picture_comes_where_the_compressed_one_is_only_advertised(lab):
+    from mhri.camera.ros.camera_feed import CameraFeed
+    with subprocess.Popen([sys.executable, '-c', CAMERA], env=lab.robot.env) as camera:
+        feed = CameraFeed('bot1', ['raspicam_node/image'], 'rgb')
+        feed.open()
+        try:
+            wait_for(feed.take, LONG_S, lambda: 'a picture: {}'.format(feed.status()))
+            assert feed.status().transport == 'raw'
+        finally:
+            feed.close(LONG_S)
+            camera.kill()
 
 
 def test_the_link_says_how_good_it_is(lab):

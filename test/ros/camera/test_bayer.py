@@ -11,6 +11,7 @@ import pytest
 from mhri.camera.image_message import COMPRESSED_TYPE, RawImage
 from mhri.camera.images import FrameError
 from mhri.camera.ros.pictures import decode_raw, read_picture
+from mhri.camera.shades import Shades
 from support.pictures import colour_picture, compressed_message
 
 PICTURE = colour_picture(320, 240)
@@ -28,12 +29,13 @@ def mosaic_of(pattern, bits):
 
 def raw_of(mosaic, encoding, view=None):
     height, width = mosaic.shape
-    return decode_raw(RawImage(height, width, encoding, 0, 0, mosaic.tobytes()), view)[0]
+    image = RawImage(height, width, encoding, 0, 0, mosaic.tobytes())
+    return Shades().rgb(decode_raw(image, view)[0], 0.0)[0]
 
 
 def decode_compressed(fmt, data, view=None):
-    frame, kind = read_picture('rgb', COMPRESSED_TYPE, compressed_message(fmt, data), view, None,
-                               0.0)
+    frame, kind = read_picture('rgb', COMPRESSED_TYPE, compressed_message(fmt, data), view,
+                               Shades(), 0.0)
     return frame.rgb, frame.full_size, kind
 
 

@@ -10,6 +10,7 @@ from sensor_msgs.msg import CompressedImage, Image
 
 from mhri.camera.ros.picture_relay import PictureRelay
 from mhri.camera.ros.pictures import read_depth, read_picture
+from mhri.camera.shades import Shades
 
 RED = np.full((48, 64, 3), (200, 40, 30), np.uint8)
 
@@ -46,13 +47,13 @@ def raw(encoding, pixels):
 class Screen:
     """A camera's subscription, its clock, and what is passed on at so many pictures a second."""
 
-    def __init__(self, hz=-1.0):
+    def __init__(self, hz=-1.0, kind='rgb'):
         self.now, self.received, self.publisher = 100.0, [], Publisher()
         self.relay = PictureRelay(lambda: self.now, lambda: self.publisher)
         self.relay.open()
         self.relay.limit('recorder', hz)
         self.receive = self.relay.relaying(
-            '/a/image', lambda *message: self.received.append(message))
+            '/a/image', lambda *message: self.received.append(message), kind)
 
     def topics(self, picture, period_s, count=20):
         for _ in range(count):
@@ -79,7 +80,7 @@ def test_raw_pictures_become_jpegs_of_the_same_stamp_and_few_of_them():
     picture = screen.publisher.said[0][1]
     header = message_of(picture).header
     assert (header.stamp, header.frame_id) == (rospy.Time(12, 34), 'lens')
-    frame, transport = read_picture('rgb', CompressedImage._type, picture, None, None, 0.0)
+    frame, transport = read_picture('rgb', CompressedImage._type, picture, None, Shades(), 0.0)
     assert transport == 'jpeg' and np.abs(frame.rgb.astype(int) - RED).max() < 12
     assert len(screen.received) == 60, 'the screen sees them all'
 
@@ -93,12 +94,21 @@ def test_fewer_raw_pictures_where_the_recorder_keeps_fewer():
 def test_raw_depth_stays_depth(encoding, dtype, scale):
     metres = np.linspace(0.4, 60.0, 48 * 64).reshape(48, 64)
     metres[0, 0] = 0.0
-    screen = Screen()
+    screen = Screen(kind='depth')
     assert screen.topics(raw(encoding, (metres * scale).astype(dtype)), 1.0, 1) == [
         '/a/image/compressedDepth']
     depth, _, transport = read_depth(CompressedImage._type, screen.publisher.said[0][1])
     assert transport == 'compressedDepth png' and np.isnan(depth[0, 0])
     assert np.nanmax(np.abs(depth - metres)) < 0.0011
+
+
+def test_what_a_thermal_camera_sends_becomes_a_jpeg_of_its_shades():
+    screen = Screen()
+    kelvin = np.linspace(7200, 8100, 48 * 64).reshape(48, 64).astype('<u2')
+    assert screen.topics(raw('16UC1', kelvin), 1.0, 1) == ['/a/image/compressed']
+    frame, _ = read_picture('rgb', CompressedImage._type, screen.publisher.said[0][1], None,
+                            Shades(), 0.0)
+    assert frame.rgb.min() < 10 and frame.rgb.max() > 245
 
 
 def test_what_cannot_be_decoded_is_left_out():

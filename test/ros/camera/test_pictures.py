@@ -10,6 +10,7 @@ from mhri.camera.depth_colour import DepthColour
 from mhri.camera.image_message import COMPRESSED_TYPE, RAW_TYPE, RawImage
 from mhri.camera.images import FrameError
 from mhri.camera.ros.pictures import decode_raw, decode_raw_depth, read_picture
+from mhri.camera.shades import Shades
 from support.pictures import colour_picture, compressed_message
 from support.pictures import depth_picture, raw_message
 
@@ -30,6 +31,13 @@ def same(found, expected):
 
 def raw(encoding, data, width=64, height=48, step=0, is_bigendian=0):
     return RawImage(height, width, encoding, is_bigendian, step, data)
+
+
+def shown(image, view=None):
+    """Return (rgb, size as sent, values of black and white) of a raw picture."""
+    pixels, full = decode_raw(image, view)
+    rgb, values = Shades().rgb(pixels, 0.0)
+    return rgb, full, values
 
 
 def yuv(pattern, width=64, height=48):
@@ -53,26 +61,74 @@ def yuv(pattern, width=64, height=48):
 ])
 @pytest.mark.parametrize('view', [None, (32, 24)])
 def test_raw_red_is_red(encoding, data, view):
-    rgb, full = decode_raw(raw(encoding, data.tobytes()), view)
+    rgb, full, _ = shown(raw(encoding, data.tobytes()), view)
     assert full == (64, 48) and rgb.shape == ((24, 32, 3) if view else (48, 64, 3))
     assert rgb.flags.c_contiguous and np.abs(rgb.astype(int) - RED).max() <= 3
 
 
-@pytest.mark.parametrize('encoding, kind', [('mono8', 'u1'), ('8UC1', 'u1'), ('mono16', '<u2')])
-def test_raw_grey(encoding, kind):
-    pixels = np.full((48, 64), 90 if kind == 'u1' else 90 * 256, kind)
-    assert (decode_raw(raw(encoding, pixels.tobytes()))[0] == 90).all()
+@pytest.mark.parametrize('encoding', ['mono8', '8UC1'])
+def test_raw_grey(encoding):
+    pixels = np.full((48, 64), 90, np.uint8)
+    rgb, _, values = shown(raw(encoding, pixels.tobytes()))
+    assert (rgb == 90).all() and values is None
+
+
+@pytest.mark.parametrize('encoding, kind, low, high', [
+    ('mono16', '<u2', 0, 1023), ('mono16', '<u2', 7200, 8100), ('16UC1', '<u2', 0, 65535),
+    ('16SC1', '<i2', -300, 4000), ('32SC1', '<i4', -5, 70000), ('32FC1', '<f4', 0.0, 1.0),
+    ('32FC1', '<f4', 273.1, 310.0), ('64FC1', '<f8', -1.0, 1.0), ('8SC1', 'i1', -100, 100)])
+@pytest.mark.parametrize('view', [None, (32, 24)])
+def test_grey_of_other_numbers_is_seen_whatever_part_of_them_it_fills(
+        encoding, kind, low, high, view):
+    """A thermal camera of 14 bits leaves the top of its 16 bits empty."""
+    pixels = np.linspace(low, high, 48 * 64).reshape(48, 64).astype(kind)
+    rgb, full, values = shown(raw(encoding, pixels.tobytes()), view)
+    assert full == (64, 48) and len(np.unique(rgb)) > 140
+    assert rgb[0, 0, 0] == 0 and rgb[-1, -1, 0] == 255
+    assert values == pytest.approx(np.percentile(pixels, (2, 98)), abs=0.03 * (high - low))
+
+
+def test_metres_that_are_none_are_black_and_count_for_nothing():
+    pixels = np.array([[np.nan, np.inf, -np.inf] + [1.0] * 30 + [2.0] * 31] * 48, '<f4')
+    rgb, _, values = shown(raw('32FC1', pixels.tobytes()))
+    assert values == pytest.approx((1.0, 2.0)) and not rgb[:, [0, 2]].any()
+
+
+@pytest.mark.parametrize('encoding', ['rgb16', 'bayer_rggb16'])
+@pytest.mark.parametrize('bits', [10, 12, 14, 16])
+def test_colours_of_fewer_bits_than_their_numbers_keep_their_balance(encoding, bits):
+    white = 2 ** bits - 1
+    pixels = np.full((48, 64, 3), white // 2, '<u2')
+    pixels[24:] = white
+    pixels = pixels if encoding == 'rgb16' else np.ascontiguousarray(pixels[..., 0])
+    rgb, _, values = shown(raw(encoding, pixels.tobytes()))
+    assert values is None
+    assert abs(int(rgb[10, 30, 0]) - 127) <= 1 and (rgb[40, 30] == 255).all()
+
+
+@pytest.mark.parametrize('colours', [False, True])
+def test_a_png_of_16_bits_is_seen(colours):
+    pixels = np.linspace(0, 1023, 48 * 64).reshape(48, 64).astype(np.uint16)
+    coded = np.dstack([pixels // 4, pixels // 2, pixels]) if colours else pixels
+    message = compressed_message(
+        'bgr16; png compressed bgr16' if colours else 'mono16; png compressed ',
+        cv2.imencode('.png', coded)[1].tobytes())
+    frame, transport = read('rgb', COMPRESSED_TYPE, message)
+    assert transport == 'png' and len(np.unique(frame.rgb)) > 200
+    assert (frame.grey_range is None) == colours
+    if colours:
+        assert abs(int(frame.rgb[-1, -1, 0]) - 255) < 2 and frame.rgb[-1, -1, 2] in (63, 64)
 
 
 def test_raw_big_endian_and_padded_rows():
     pixels = np.arange(48 * 64).reshape(48, 64).astype('>u2') * 21
     padded = np.zeros((48, 70), '>u2')
     padded[:, :64] = pixels
-    rgb = decode_raw(raw('mono16', padded.tobytes(), step=140, is_bigendian=1))[0]
-    assert np.array_equal(rgb[..., 0], np.rint(pixels / 257.0))
+    found = decode_raw(raw('mono16', padded.tobytes(), step=140, is_bigendian=1))[0]
+    assert np.array_equal(found, pixels)
     # Whatever number says so: it is a bool.
     assert np.array_equal(decode_raw(raw('mono16', padded.tobytes(), step=140, is_bigendian=7))[0],
-                          rgb)
+                          pixels)
     # The last row may end with its last pixel.
     rows = np.zeros((48, 200), np.uint8)
     rows[:, :192] = PICTURE[:48, :64].reshape(48, 192)
@@ -89,8 +145,8 @@ def test_raw_is_not_changed_and_not_shared():
 
 @pytest.mark.parametrize('image, words', [
     (raw('rgb8', b'\0' * 100), 'truncated'), (raw('', b'\0' * 100), 'encoding'),
-    (raw('bayer_rggb12', b'\0' * 9999), 'encoding'), (raw('16UC1', b'\0' * 9999), '16UC1.*color'),
-    (raw('32FC1', b'\0' * 99999), '32FC1.*color'), (raw('8UC0', b'\0' * 9999), '8UC0'),
+    (raw('bayer_rggb12', b'\0' * 9999), 'encoding'), (raw('16UC2', b'\0' * 99999), '16UC2'),
+    (raw('32FC3', b'\0' * 99999), '32FC3.*color'), (raw('8UC0', b'\0' * 9999), '8UC0'),
     (raw('8UC99999999999999', b'\0' * 9999999), '8UC999'), (raw('8UC5', b'\0' * 99999), '8UC5'),
     (raw('64FC512', b'\0' * 9999, 1, 1), '64FC512'), (raw('\0\uffff', b'\0' * 99999), 'encoding'),
     (raw('rgb8', b'\0' * 9216, step=100), 'rows of 100'), (raw('rgb8', b'', 0, 0), '0 x 0'),
@@ -134,7 +190,8 @@ RAW_DEPTH = raw_message('16UC1', 48, 64, SMALL_MM.tobytes(), 128)
 
 
 def read(kind, message_type, data, view=None):
-    return read_picture(kind, message_type, data, view, DepthColour(), 12.5)
+    colour = DepthColour() if kind == 'depth' else Shades()
+    return read_picture(kind, message_type, data, view, colour, 12.5)
 
 
 @pytest.mark.parametrize('kind, message_type, data, transport', [
@@ -166,7 +223,7 @@ def test_cut_off_anywhere(data):
 @pytest.mark.parametrize('kind, message_type, data, words', [
     ('rgb', 'std_msgs/String', b'', 'std_msgs/String is not a picture'),
     ('rgb', COMPRESSED_TYPE, DEPTH, 'neither jpeg nor png'),
-    ('rgb', RAW_TYPE, RAW_DEPTH, '16UC1'), ('depth', RAW_TYPE, RAW, 'rgb8'),
+    ('depth', RAW_TYPE, RAW, 'rgb8'),
     ('depth', COMPRESSED_TYPE, JPEG, "'jpeg'"), ('rgb', COMPRESSED_TYPE, RAW, 'truncated|bytes'),
 ])
 def test_one_for_the_other(kind, message_type, data, words):

@@ -13,6 +13,7 @@ from sensor_msgs.msg import CompressedImage, Image
 from mhri.camera.depth_codec import encode_depth
 from mhri.camera.images import FrameError
 from mhri.camera.ros.recompressed import recompressed
+from mhri.camera.shades import Shades
 from mhri.graph.ros.resources import robot_types
 from mhri.link.picture_shrinker import PictureShrinker
 from mhri.session.ros.moment import jpeg_of, Moment
@@ -75,4 +76,4 @@ def test_a_picture_that_is_too_large_for_a_jpeg_is_left_out():
                       data=pixels.tobytes()), io.BytesIO()
     raw.serialize(data)
     with pytest.raises(FrameError, match='65501'):
-        recompressed(data.getvalue())
+        recompressed(data.getvalue(), 'rgb', Shades(), 0.0)

@@ -5,7 +5,7 @@ import pytest
 
 from mhri.camera.image_message import COMPRESSED_TYPE, RAW_TYPE
 from mhri.camera.stream_meter import StreamMeter
-from mhri.camera.transports import choose_offer, find_offers, may_carry
+from mhri.camera.transports import find_offers, may_carry, Speakers
 
 TOPICS = ['/bot1/a', '/bot1/b']
 
@@ -23,12 +23,55 @@ def test_offers(kind, published, expected):
     assert find_offers(kind, TOPICS, published) == expected
 
 
+OFFERS = find_offers('rgb', TOPICS, {'/bot1/a/compressed': COMPRESSED_TYPE,
+                                     '/bot1/a': RAW_TYPE, '/bot1/b': RAW_TYPE})
+PACKED, FIRST, SECOND = (offer.topic for offer in OFFERS)
+
+
+def chosen(speakers, now, transport='auto', offers=OFFERS):
+    """Return (topic to receive or None, topics to watch), and receive it."""
+    offer, silent = speakers.choose(offers, transport, now)
+    topic = offer and offer.topic
+    if topic != getattr(speakers, 'in_test', None):
+        speakers.in_test = topic
+        speakers.hold(topic, now)
+    return topic, [one.topic for one in silent]
+
+
 def test_choice():
-    offers = find_offers('rgb', TOPICS, {'/bot1/a/compressed': COMPRESSED_TYPE,
-                                         '/bot1/b': RAW_TYPE})
-    assert choose_offer(offers, 'auto').topic == '/bot1/a/compressed'
-    assert choose_offer(offers, 'raw').topic == '/bot1/b'
-    assert choose_offer(offers, 'other') is None and choose_offer([], 'auto') is None
+    for transport, topic in (('auto', PACKED), ('raw', FIRST), ('other', None)):
+        assert chosen(Speakers(), 0.0, transport) == (topic, [])
+    assert chosen(Speakers(), 0.0, offers=[]) == (None, [])
+
+
+def test_advertised_is_not_spoken():
+    speakers = Speakers()
+    assert chosen(speakers, 100.0) == (PACKED, [])
+    assert chosen(speakers, 101.0) == (PACKED, [])
+    assert chosen(speakers, 102.0) == (FIRST, [PACKED]), 'within 3 s'
+    speakers.heard(FIRST, 103.0)
+    assert chosen(speakers, 110.0) == (FIRST, [PACKED])
+    speakers.heard(PACKED, 110.0)
+    assert chosen(speakers, 110.0) == (PACKED, []), 'back when it speaks'
+    for now in range(110, 160, 8):
+        speakers.heard(PACKED, now)
+        assert chosen(speakers, now + 7.9) == (PACKED, []), 'a slow camera'
+
+
+def test_where_all_are_silent_all_are_listened_to():
+    speakers = Speakers()
+    times = (100.0, 102.0, 104.0, 106.0, 200.0)
+    assert [chosen(speakers, now)[0] for now in times] == [PACKED, FIRST, SECOND, SECOND, SECOND]
+    assert chosen(speakers, 201.0) == (SECOND, [PACKED, FIRST])
+    speakers.heard(FIRST, 202.0)
+    assert chosen(speakers, 202.0) == (FIRST, [PACKED])
+
+
+def test_what_cannot_be_received_is_passed_over_and_the_only_one_never():
+    speakers = Speakers()
+    speakers.skip(PACKED)
+    assert chosen(speakers, 100.0) == (FIRST, [PACKED])
+    assert chosen(speakers, 100.0, 'compressed') == (PACKED, [])
 
 
 @pytest.mark.parametrize('transport, topic, expected', [

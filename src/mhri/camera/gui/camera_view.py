@@ -62,6 +62,15 @@ def stream_text(status, slowed=None):
     return '  '.join(parts)
 
 
+def source_text(status, frame):
+    """Return where the displayed picture is from, or why there is none, in terms of ROS."""
+    if frame is None:
+        return status.detail
+    if frame.grey_range is None:
+        return status.source
+    return '{}\nblack is {:.6g}, white is {:.6g}'.format(status.source, *frame.grey_range)
+
+
 def shorter_stream_texts(text):
     """Return ever shorter versions of a :func:`stream_text`, down to the rate alone."""
     parts = text.split('  ')
@@ -178,7 +187,7 @@ class CameraView(WithTools):
         self.picture.show_warning(warning if self.picture.frame is not None else '')
         if self.picture.frame is None and status.problem:
             self.show_placeholder(status.problem)
-        self.picture.setToolTip(plain_tip(status.detail if self.picture.frame is None else ''))
+        self.picture.setToolTip(plain_tip(source_text(status, self.picture.frame)))
         if not self._note_timer.isActive():
             trouble = old or (status.bad and status.problem)
             text = stream_text(status, slowed)

@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Decodes the newest picture of one stream, between the network and the screen."""
+import math
 import threading
 
 import rospy
@@ -8,8 +9,9 @@ import rospy
 from mhri.base.text import tidy_text
 from mhri.camera.budget import AS_IT_COMES
 from mhri.camera.depth_colour import DepthColour
-from mhri.camera.images import FrameError, OLD_AFTER_S, StreamStatus
+from mhri.camera.images import DEPTH, FrameError, OLD_AFTER_S, StreamStatus
 from mhri.camera.ros.pictures import read_picture
+from mhri.camera.shades import Shades
 from mhri.camera.stream_meter import StreamMeter, WINDOW_S
 
 SILENT_S = 2.0
@@ -34,7 +36,7 @@ class Decoder:
         self._kind = kind
         self._wanted = wanted
         self._clock = clock
-        self._colour = DepthColour()
+        self._colour = DepthColour() if kind == DEPTH else Shades()
         self._changed = threading.Condition()
         self._ended = False
         self._message = self._last = None
@@ -44,6 +46,8 @@ class Decoder:
         self._good_at = self._bad_at = None
         self._shown = self._bad = 0
         self._problem = self._hint = self._detail = ''
+        #: the received topic, and the better ones that are silent
+        self.source = ''
         self._grant = AS_IT_COMES
         self._period_s = 0.0
         threading.Thread(target=self._run, daemon=True, name='camera ' + name).start()
@@ -76,10 +80,10 @@ class Decoder:
         with self._changed:
             self._hint, self._detail = tidy_text(hint), tidy_text(detail)
 
-    def is_receiving(self, now):
-        """Return whether pictures are being received."""
+    def is_receiving(self, now, since=-math.inf):
+        """Return whether pictures are being received, with one received after ``since``."""
         with self._changed:
-            return self._good_at is not None and (
+            return self._good_at is not None and self._good_at >= since and (
                 now - self._good_at < max(SILENT_S, _MISSED * self._period_s))
 
     def end(self):
@@ -108,7 +112,7 @@ class Decoder:
                 self._transport, rate_hz, age, bits_per_s, self._shown, self._bad,
                 self._grant.words if self._grant.rate_hz == 0.0 else self._hint or self._problem,
                 age is not None and (bad_since or age > old_after_s),
-                self._grant.words, old_after_s, self._detail)
+                self._grant.words, old_after_s, self._detail, self.source)
 
     def _run(self):
         """Decode the newest message whenever one is due (the decoder's thread)."""

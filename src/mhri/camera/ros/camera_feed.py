@@ -18,7 +18,7 @@ from mhri.camera.ros.camera_decoder import Decoder
 from mhri.camera.ros.picture_relay import PICTURE_RELAY
 from mhri.camera.ros.samples import no_answer, Samples
 from mhri.camera.stream_meter import WINDOW_S
-from mhri.camera.transports import AUTO, choose_offer, find_offers, may_carry, RAW
+from mhri.camera.transports import AUTO, find_offers, may_carry, RAW, Speakers
 from mhri.graph.ros.master_api import MasterApi, MasterError
 from mhri.graph.ros.subscription import reachable, Subscription
 
@@ -35,7 +35,8 @@ class CameraFeed:
 
     Subscribes ``/<robot>/<topic>/compressed`` (depth: ``.../compressedDepth``), type
     ``sensor_msgs/CompressedImage``, or ``/<robot>/<topic>``, type ``sensor_msgs/Image``: the first
-    one published. No method blocks, except :meth:`close` with a wait; call them on any thread.
+    one that sends pictures, and those before it, in case they begin to. No method blocks, except
+    :meth:`close` with a wait; call them on any thread.
 
     :param robot: namespace of the robot
     :param topics: camera topics relative to it, in order of preference, without transport
@@ -67,6 +68,9 @@ class CameraFeed:
         self._changed_at = clock()
         self._topic = ''
         self._known = {}
+        self._speakers = Speakers()
+        # {topic: (its session, its subscription)} of silent topics that would be better.
+        self._watched = {}
 
     def open(self):
         """Start looking for the camera and decoding; return at once."""
@@ -94,12 +98,14 @@ class CameraFeed:
 
     def line_of(self, session, offer):
         """Return (class, arguments) of the subscription to an offer."""
-        return Subscription, offer.topic, PICTURE_RELAY.relaying(offer.topic, session.receive)
+        return Subscription, offer.topic, PICTURE_RELAY.relaying(
+            offer.topic, session.receive, self.kind)
 
     def samples_of(self, session, offer, grant, native_hz):
         """Return the same for single pictures of an offer."""
-        return (Samples, offer.topic, PICTURE_RELAY.relaying(offer.topic, session.receive),
-                session.explain, grant.rate_hz, native_hz, self._clock)
+        return (Samples, offer.topic, PICTURE_RELAY.relaying(
+            offer.topic, session.receive, self.kind), session.explain, grant.rate_hz, native_hz,
+            self._clock)
 
     def close(self, wait_s=0.0):
         """Stop decoding and unregister the topic, the latter on the feed's own thread.
@@ -203,13 +209,15 @@ class CameraFeed:
         while True:
             with self._changed:
                 depends = session, transport, grant = self._dependencies()
-                if session is None and self._line is None:
+                if session is None and self._line is None and not self._watched:
                     self._finder = None
                     return
-            if self._line is not None and (session is not served or grant.rate_hz == 0.0):
+            if (self._line or self._watched) and (session is not served or grant.rate_hz == 0.0):
+                self._watch(())
                 self._hold(None)
                 continue
-            served = session
+            if session is not served:
+                served, self._speakers = session, Speakers()
             if grant.rate_hz != 0.0:
                 self._look_guarded(session, AUTO if grant.lighter else transport, grant)
             self._rest(depends)
@@ -230,7 +238,8 @@ class CameraFeed:
 
     def _rest(self, depends):
         """Wait until the next query is due, or the required subscription has changed."""
-        look_s = LOOK_AGAIN_S if depends[0].is_receiving(self._clock()) else LOOK_S
+        look_s = LOOK_AGAIN_S if depends[0].is_receiving(self._clock()) and not self._watched \
+            else LOOK_S
         with self._changed:
             if self._dependencies() == depends:
                 self._changed.wait(look_s)
@@ -246,6 +255,21 @@ class CameraFeed:
         with self._changed:
             self._line, self._changed_at = line, self._clock()
             self._topic = line.topic if line else self._topic
+        if line is not None:
+            self._speakers.hold(line.topic, self._changed_at)
+
+    def _watch(self, offers):
+        """Subscribe these offers beside the one that is received, and no others any more."""
+        wanted = {offer.topic: offer for offer in offers}
+        for topic in [topic for topic in self._watched if topic not in wanted]:
+            session, line = self._watched.pop(topic)
+            session.end()
+            _unsubscribe(line)
+        for topic, offer in wanted.items():
+            if topic not in self._watched and reachable(rospy.get_name(), topic):
+                session = self.new_session(lambda: (None, 1.0 / LOOK_S))
+                make, *args = self.line_of(session, offer)
+                self._watched[topic] = session, make(*args)
 
     def _look(self, session, transport, grant):
         """Query the master; hold the matching subscription, or none.
@@ -256,7 +280,13 @@ class CameraFeed:
         offers = self.find_offers(published)
         with self._changed:
             self._offers = offers if self._session is session else []
-        offer, line = choose_offer(offers, transport), self._line
+        now, line = self._clock(), self._line
+        heard = [topic for topic, (one, _) in self._watched.items() if one.is_receiving(now)]
+        if line and session.is_receiving(now, self._changed_at):
+            heard.append(line.topic)
+        for topic in heard:
+            self._speakers.heard(topic, now)
+        offer, silent = self._speakers.choose(offers, transport, now)
         if offer is None:
             session.explain(*self._why_nothing(transport, offers))
             if line and not may_carry(self.kind, transport, line.topic):
@@ -268,11 +298,15 @@ class CameraFeed:
                 self._hold(*self.samples_of(session, offer, grant, native_hz))
         elif not (isinstance(line, Subscription) and line.topic == offer.topic):
             self._subscribe(session, offer)
+        self._watch(silent)
+        session.source = ''.join([offer.topic if offer else ''] + [
+            '; {} sends no picture'.format(one.topic) for one in silent])
 
     def _subscribe(self, session, offer):
         """Switch to an offer if its publisher answers."""
         if not reachable(rospy.get_name(), offer.topic):
             session.explain(*no_answer(offer.topic))
+            self._speakers.skip(offer.topic)
             return
         session.explain('no {} has come yet'.format(self.word), 'waiting for ' + offer.topic)
         self._hold(*self.line_of(session, offer))

@@ -16,6 +16,7 @@ from sensor_msgs.msg import CompressedImage, Image
 
 from mhri.camera.images import FrameError
 from mhri.camera.ros.recompressed import recompressed
+from mhri.camera.shades import Shades
 from mhri.camera.transports import PICTURES
 from mhri.msg import SeenPicture
 
@@ -74,15 +75,20 @@ class PictureRelay:
         """Return ``topic`` of the messages that relay a topic; '' for ''."""
         return self._names.get(topic, topic)
 
-    def relaying(self, topic, receive):
-        """Return a function of (type, bytes) that calls ``receive``, and relays the bytes."""
+    def relaying(self, topic, receive, kind):
+        """Return a function of (type, bytes) that calls ``receive``, and relays the bytes.
+
+        :param kind: 'rgb' or 'depth'
+        """
+        shades = Shades()
+
         def heard(message_type, data):
             """Handle a picture (on the thread that received it)."""
             receive(message_type, data)
             if message_type == CompressedImage._type:
                 self._pass(topic, data)
             elif message_type == Image._type:
-                self._pass_raw(topic, data)
+                self._pass_raw(topic, data, kind, shades)
         return heard
 
     def _pass(self, topic, data):
@@ -90,12 +96,12 @@ class PictureRelay:
         if publisher is not None:
             publisher.publish(topic, bytes(data))
 
-    def _pass_raw(self, topic, data):
+    def _pass_raw(self, topic, data, kind, shades):
         publisher = self._due(topic, 1.0 / RAW_HZ)
         if publisher is None:
             return
         try:
-            suffix, message = recompressed(data)
+            suffix, message = recompressed(data, kind, shades, self._clock())
         except FrameError as error:
             # Its tile shows the reason.
             rospy.logdebug('%s is not relayed: %s', topic, error)

@@ -16,7 +16,8 @@ from mhri.camera.images import check_size, DEPTH, fit, Frame, FrameError, RGB
 
 _BRIDGE = CvBridge()
 # The actual encodings behind names that drivers use but cv_bridge does not convert to colour.
-_MEANT = {'8UC1': 'mono8', '8UC3': 'bgr8', 'uyvy': 'yuv422'}
+_MEANT = {'8UC1': 'mono8', '8UC3': 'bgr8', '8UC4': 'bgra8', '16UC3': 'bgr16', '16UC4': 'bgra16',
+          'uyvy': 'yuv422'}
 _YUYV = ('yuv422_yuy2', 'yuyv')
 #: encodings of raw depth: 16 bits in millimetres, 32 in metres (REP-118)
 DEPTHS = ('16UC1', 'mono16', '32FC1')
@@ -28,12 +29,14 @@ def read_picture(kind, message_type, data, view, colour, received_s):
     :param kind: 'rgb' or 'depth'
     :param message_type: e.g. 'sensor_msgs/CompressedImage'
     :param view: room for the picture (width, height) [pixels], None for the full size
-    :param colour: :class:`mhri.camera.depth_colour.DepthColour` of the stream
+    :param colour: of the stream: :class:`mhri.camera.depth_colour.DepthColour`, of 'rgb'
+        :class:`mhri.camera.shades.Shades`
     :raises FrameError: another type, or a picture that cannot be decoded
     """
     if kind == RGB:
-        rgb, full, transport = _read_rgb(message_type, data, view)
-        return Frame(RGB, rgb, None, full, None, received_s), transport
+        pixels, full, transport = _read_rgb(message_type, data, view)
+        rgb, grey_range = colour.rgb(pixels, received_s)
+        return Frame(RGB, rgb, None, full, None, received_s, grey_range), transport
     depth, full, transport = read_depth(message_type, data, view)
     rgb, depth_range = colour.colour(depth, received_s)
     return Frame(DEPTH, rgb, depth, full, depth_range, received_s), transport
@@ -66,7 +69,9 @@ def _compressed(message_type, data):
 
 
 def decode_raw(image, view=None):
-    """Return (rgb uint8 (h, w, 3), (width, height) as sent) of a raw colour or grey picture.
+    """Return (pixels, (width, height) as sent) of a raw colour or grey picture.
+
+    The pixels are RGB (h, w, 3) in 8 or 16 bits, or grey of any number type (h, w).
 
     :param image: :class:`mhri.camera.image_message.RawImage`
     :param view: room for the picture (width, height) [pixels], None for the full size
@@ -80,7 +85,15 @@ def decode_raw(image, view=None):
         raise FrameError('raw image: {} with an odd width of {}'.format(image.encoding, full[0]))
     if image.encoding in _YUYV:
         packed = packed._replace(data=np.frombuffer(packed.data, 'u2').byteswap())
-    return reduced(_converted(packed, 'rgb8'), fit(full, view)), full
+    kind, channels = _BRIDGE.encoding_to_dtype_with_channels(encoding)
+    is_grey = channels == 1 and not encoding.startswith('bayer_')
+    pixels = _converted(packed, 'passthrough' if is_grey else
+                        'rgb16' if np.dtype(kind).itemsize == 2 else 'rgb8')
+    if pixels.dtype.kind == 'f':
+        return shrink_depth(pixels, view), full
+    if pixels.dtype in (np.int8, np.int32):  # cv2 cannot resize these
+        pixels = pixels.astype(np.float64)
+    return reduced(pixels, fit(full, view)), full
 
 
 def decode_raw_depth(image, view=None):

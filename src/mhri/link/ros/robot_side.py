@@ -6,6 +6,8 @@ import math
 import rospy
 
 from mhri.base.robot_types import resolve_robot_type
+from mhri.camera.image_message import has_content
+from mhri.camera.transports import FIRST_S
 from mhri.driving.guard_link import parse_id
 from mhri.graph.ros.master_api import MasterApi, MasterError
 from mhri.graph.ros.messages import bytes_of, message_class
@@ -48,13 +50,13 @@ class CarriedStream:
     """
 
     def __init__(self, namespace, stream, rename, send, clock):
-        self.requested_at = clock()
+        self.requested_at = self._opened_at = clock()
         self.stream = stream
         self._send = send
         self._clock = clock
         self._pace = Pace(stream.rate_hz)
         self.flow = Flow(stream)
-        self._whole = False
+        self._whole = self._spoke = False
         self._newest = None
         self._sent_at = clock()
         self._transforms = None
@@ -73,6 +75,7 @@ class CarriedStream:
         elif self.stream.latched:
             self._newest = bytes(data)
         now = self._clock()
+        self._spoke = self._spoke or has_content(kind, data)
         self.flow.came(now)
         if self._whole or self._pace.lets(now):
             self._go(kind, bytes(data), now)
@@ -98,6 +101,10 @@ class CarriedStream:
         """Send a latched message again, since it may be lost, or for later subscribers."""
         if self.stream.latched and now - self._sent_at >= LATCHED_S:
             self._go('', self._newest, now)
+
+    def is_silent(self):
+        """Return whether nothing has come although it was requested for a while."""
+        return not self._spoke and self._clock() - self._opened_at > FIRST_S
 
     def close(self):
         """Unsubscribe (blocking: calls the master)."""
@@ -300,8 +307,10 @@ class RobotSide(Side):
         streams = {full_topic(self._namespace, stream.topic): stream
                    for stream in up_streams(kind)}
         own = rospy.get_name()
+        # A compressed picture that is only advertised is in nobody's place.
+        silent = {topic for topic, carried in list(self._open.items()) if carried.is_silent()}
         there = {streams[topic].topic for topic, nodes in state[0]
-                 if topic in streams and any(node != own for node in nodes)}
+                 if topic in streams and any(node != own for node in nodes)} - silent
         topics = dict(self._about.topics)
         kinds = dict(map(tuple, types))
         for stream in worth_carrying(list(streams.values()), there):

@@ -1,13 +1,15 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Writes the film of a session at a constant frame rate with OpenCV (FFmpeg)."""
+from collections import defaultdict
 import os
-
-import numpy as np
 
 from mhri.base.geometry import composed, Pose
 from mhri.base.io.files import whole
 from mhri.base.opencv import cv2
+from mhri.camera.image_codec import decode_compressed
+from mhri.camera.images import FrameError
+from mhri.camera.shades import Shades
 from mhri.recording.folder import NotASession
 from mhri.session.film import (
     cameras_of, frame_count, frame_of, frame_size, Headings, map_size, OLD_S, Tile)
@@ -41,6 +43,7 @@ class Film:
             raise NotASession('{}: no film: no pictures of cameras are recorded in it'.format(
                 session.path))
         self._newest, self._decoded, self._motions = {}, {}, {}
+        self._shades = defaultdict(Shades)
         self._origins = None, {}
         size = map_size(len(self._cameras))
         self._map = FilmMap(report, builder.grid, size) if size else None
@@ -141,13 +144,14 @@ class Film:
 
     def _decode(self, recorded):
         message = self._builder.message(recorded)
-        if message is None or not message.data:
+        if message is None:
             return None
         try:
-            picture = cv2.imdecode(np.frombuffer(message.data, np.uint8), cv2.IMREAD_COLOR)
-        except cv2.error:
+            pixels, size, _ = decode_compressed(message.format, message.data)
+        except FrameError:
             return None
-        return picture if picture is not None and max(picture.shape) <= _LARGEST else None
+        rgb = self._shades[recorded.connection.topic].rgb(pixels, recorded.time_ns / _NS)[0]
+        return rgb[..., ::-1] if max(size) <= _LARGEST else None
 
 
 def _writer(path, fps, size):

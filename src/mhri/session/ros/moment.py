@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The data of a mark: the pose of every robot, and a still of every active camera."""
 import genpy
-import numpy as np
 import rospy
 from sensor_msgs.msg import CompressedImage
 
@@ -43,11 +42,13 @@ def jpeg_of(frame, depth=False):
     # Rarely needed: most cameras send JPEGs.
     from mhri.base.opencv import cv2
     from mhri.camera.depth_still import depth_still
+    from mhri.camera.image_codec import decode_compressed
     from mhri.camera.images import FrameError
+    from mhri.camera.shades import Shades
     try:
-        pixels = depth_still(picture.format, data) if depth else \
-            cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_COLOR) if data else None
-        done, found = cv2.imencode('.jpg', pixels) if pixels is not None else (False, None)
+        pixels = depth_still(picture.format, data) if depth else Shades().rgb(
+            decode_compressed(picture.format, data)[0], 0.0)[0][..., ::-1]
+        done, found = cv2.imencode('.jpg', pixels)
     except (cv2.error, FrameError):
         return None  # too large for a JPEG, or no picture
     return found.tobytes() if done else None
