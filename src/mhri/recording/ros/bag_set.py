@@ -13,10 +13,12 @@ with the installed definitions; see :func:`keep_installed`.
 """
 from bisect import bisect_right
 from collections import OrderedDict
+from dataclasses import replace
 import heapq
 import io
 import itertools
 import os
+import re
 import struct
 from types import SimpleNamespace
 from typing import NamedTuple
@@ -28,10 +30,11 @@ import rosbag.bag
 from rosbag.bag import ROSBagException, ROSBagUnindexedException
 
 from mhri.base.io.files import text_in
-from mhri.base.text import listed
+from mhri.base.text import listed, tidy_text
 from mhri.graph.ros.messages import installed_class, MessageMissing
 from mhri.recording.folder import (
     bags_of, EVENTS_JSONL, NotASession, read_events, read_info, robots_of, SESSION_YAML)
+from mhri.recording.time_fold import GAP_NS, spans_of, TimeFold
 
 # Maximum number of open bags: the one being played, its neighbours, and those that a seek reads.
 MAX_OPEN = 6
@@ -44,6 +47,9 @@ DAMAGED = (ROSBagException, OSError, EOFError, ValueError, KeyError, IndexError,
            struct.error, MemoryError, OverflowError, RuntimeError, genpy.DeserializationError)
 _NS = 10 ** 9
 _VERSION = 200
+# Legal names (http://wiki.ros.org/Names), except private ones; the types of old versions.
+_LEGAL = re.compile(r'/*[A-Za-z][A-Za-z0-9_]*(/+[A-Za-z0-9_]+)*/*\Z')
+_RENAMED = {'tf/tfMessage': 'tf2_msgs/TFMessage'}
 # Parts of an index record: lengths, the field with the number of its connection, and its entries.
 _LENGTH, _CONN = struct.Struct('<I'), b'conn='
 _ENTRY = np.dtype([('s', '<u4'), ('n', '<u4'), ('offset', '<u4')])
@@ -89,12 +95,14 @@ class BagSet:
     """Bags in the order of time; not thread-safe.
 
     :param paths: files; they may overlap a little, since each begins with the latched messages
+    :param folds: whether times are without strays and long gaps (:class:`TimeFold`)
     :raises NotASession: none of them can be read
     """
 
-    def __init__(self, paths):
-        self._paths, self._starts, self._ends = [], [], []
+    def __init__(self, paths, folds=False):
+        self._paths, self._spans = [], []
         self._kinds, self._there = [], []
+        self._fold = None
         self._open = OrderedDict()
         #: sentences about omissions
         self.problems = []
@@ -105,9 +113,23 @@ class BagSet:
             self.problems.append(_left_out(left_out))
         if not self._paths:
             raise NotASession('; '.join(self.problems) or 'there is no bag in it')
+        fold = TimeFold(itertools.chain(*self._spans)) if folds else None
+        if fold is not None and fold.problems:
+            self._fold = fold
+            self.problems += fold.problems
+            self._spans = list(map(fold.spans, self._spans))
+        self._starts = [min(begin for begin, *_ in spans) for spans in self._spans]
+        self._ends = [max(end for _, end, _ in spans) for spans in self._spans]
         order = sorted(range(len(self._paths)), key=lambda index: self._starts[index])
         for name in ('_paths', '_starts', '_ends', '_kinds', '_there'):
             setattr(self, name, [getattr(self, name)[index] for index in order])
+
+    def folded(self, event):
+        """Return a line of a session at its time among the messages."""
+        if self._fold is None:
+            return event
+        time_ns = np.array(min(max(event.ros, 0.0), 4e9) * _NS).astype(np.int64)
+        return replace(event, ros=int(self._fold(time_ns)) / _NS)
 
     def _add_bag(self, path, left_out):
         """Add a bag, without its index."""
@@ -120,8 +142,7 @@ class BagSet:
                 left_out.update(opened.left_out)
                 if not bag._chunks:
                     return
-                self._starts.append(min(chunk.start_time.to_nsec() for chunk in bag._chunks))
-                self._ends.append(max(chunk.end_time.to_nsec() for chunk in bag._chunks))
+                self._spans.append(_spans(bag))
                 self._kinds.append({number: _connection(found)
                                     for number, found in bag._connections.items()})
         except DAMAGED as error:
@@ -151,10 +172,20 @@ class BagSet:
             self._open.move_to_end(index)
             return self._open[index]
         bag = _opened(self._paths[index]).bag
-        self._open[index] = bag, index_of(bag)
+        entries = index_of(bag)
+        if self._fold is not None:
+            entries = {number: self._folded(index, entries[number], kind.latched)
+                       for number, kind in self._kinds[index].items() if number in entries}
+        self._open[index] = bag, entries
         while len(self._open) > MAX_OPEN:
             self._open.popitem(last=False)[1][0].close()
         return self._open[index]
+
+    def _folded(self, index, entries, latched):
+        """Return entries of a bag at their folded times; of strays only latched ones, first."""
+        stray = self._fold.is_stray(entries.times)
+        times = np.where(stray, self._starts[index], self._fold(entries.times))
+        return _in_order(*(part[~stray | latched] for part in (times, *entries[1:])))
 
     def _read(self, place):
         bag, _ = self._bag(place.bag)
@@ -241,6 +272,17 @@ class BagSet:
         """Close every file."""
         while self._open:
             self._open.popitem()[1][0].close()
+
+
+def _spans(bag):
+    """Return the :data:`Span` rows of an open bag."""
+    spans = [(chunk.start_time.to_nsec(), chunk.end_time.to_nsec(),
+              sum(chunk.connection_counts.values())) for chunk in bag._chunks]
+    if all(end - begin <= GAP_NS for begin, end, _ in spans):
+        return spans
+    # There may be a gap within a chunk.
+    entries = index_of(bag).values()
+    return spans_of(np.sort(np.concatenate([one.times for one in entries]))) if entries else spans
 
 
 class Entries(NamedTuple):
@@ -352,7 +394,10 @@ def keep_installed(bag):
     """
     left_out = {}
     for number, found in list(bag._connections.items()):
+        found.datatype = _RENAMED.get(found.datatype, found.datatype)
         try:
+            if not _LEGAL.match(found.topic):
+                raise MessageMissing('not a name in ROS')
             kind = installed_class(found.datatype, found.md5sum)
         except MessageMissing as error:
             left_out[found.topic] = str(error)
@@ -383,8 +428,9 @@ _check_rosbag()
 
 def _left_out(reasons):
     """Return a sentence about omitted topics."""
-    return 'types that are not installed here: ' + listed((
-        '{} ({})'.format(topic, reason) for topic, reason in sorted(reasons.items())), MAX_NAMED)
+    return 'topics that cannot be read here: ' + listed((
+        '{} ({})'.format(tidy_text(topic, 80), reason)
+        for topic, reason in sorted(reasons.items())), MAX_NAMED)
 
 
 def _reason(error):
@@ -394,7 +440,9 @@ def _reason(error):
 def _connection(found):
     """Return the :class:`Connection` for a connection of ``rosbag``."""
     latched = found.header.get('latching', b'0')
-    return Connection(found.topic, found.datatype, found.md5sum, found.msg_def,
+    # "rosbag record bot1/odom" writes the name as it was typed.
+    topic = '/' + '/'.join(filter(None, found.topic.split('/')))
+    return Connection(topic, found.datatype, found.md5sum, found.msg_def,
                       latched in (b'1', '1'))
 
 
@@ -427,12 +475,12 @@ def open_session(path, foreign):
 def _open_folder(path, foreign):
     names = sorted(os.listdir(path))
     bags = bags_of(names) or [name for name in names if name.endswith('.bag')]
-    opened = BagSet([os.path.join(path, name) for name in bags])
+    opened = BagSet([os.path.join(path, name) for name in bags], folds=True)
     name = os.path.basename(path)
     info = os.path.join(path, SESSION_YAML)
     if not os.path.exists(info):
         return _open_foreign(name, opened, foreign)
-    events = tuple(read_events(text_in(os.path.join(path, EVENTS_JSONL))))
+    events = tuple(map(opened.folded, read_events(text_in(os.path.join(path, EVENTS_JSONL)))))
     return OpenSession(name, opened, events, robots_of(read_info(text_in(info)), events), '')
 
 
@@ -440,7 +488,7 @@ def _open_file(path, foreign):
     if not os.path.exists(path):
         raise NotASession('there is no such file or folder')
     name = os.path.splitext(os.path.basename(path))[0]
-    return _open_foreign(name, BagSet([path]), foreign)
+    return _open_foreign(name, BagSet([path], folds=True), foreign)
 
 
 def _open_foreign(name, bags, foreign):

@@ -106,8 +106,10 @@ def _open(path):
         problems.append('{} lines of {} make no sense'.format(strange, EVENTS_JSONL))
     bags = None
     try:
-        bags = ThinnedBags([os.path.join(path, name) for name in bags_of(sorted(os.listdir(path)))])
+        bags = ThinnedBags([os.path.join(path, name) for name in bags_of(sorted(os.listdir(path)))],
+                           folds=True)
         problems += bags.problems
+        events = list(map(bags.folded, events))
     except NotASession as error:
         problems.append('no bag can be read: {}'.format(error))
     return Session(path, info, events, robots_of(info, events), bags, problems)
