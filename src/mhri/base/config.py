@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Parses configuration text into validated values; refuses unknown keys by name."""
+import re
 import reprlib
 from numbers import Real
 from typing import (
@@ -224,7 +225,45 @@ class _Loader(yaml.SafeLoader):  # type: ignore[misc]  # mypy does not look into
         raise yaml.constructor.ConstructorError(None, None, problem, what.start_mark)
 
 
+class _Dumper(yaml.SafeDumper):  # type: ignore[misc]
+    """Writes YAML that :class:`_Loader` reads as it was."""
+
+
+_INT, _FLOAT = ('tag:yaml.org,2002:' + kind for kind in ('int', 'float'))
+# Numbers as in YAML 1.2. By 1.1, which PyYAML reads, 5e-02 is a text, 1_5 is 15, 1:30 is 90 and
+# 010 is 8.
+for _yaml in (_Loader, _Dumper):
+    _yaml.yaml_implicit_resolvers = {
+        first: [row for row in rows if row[0] not in (_INT, _FLOAT)]
+        for first, rows in _yaml.yaml_implicit_resolvers.items()}
+    _yaml.add_implicit_resolver(_INT, re.compile(
+        r'[-+]?(0|[1-9][0-9]*|0x[0-9a-fA-F]+)\Z'), [*'-+0123456789'])
+    _yaml.add_implicit_resolver(_FLOAT, re.compile(
+        r'[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?\Z'
+        r'|[-+]?\.(inf|Inf|INF)\Z|\.(nan|NaN|NAN)\Z'), [*'-+.0123456789'])
+# Without it, a line break in a text is one in the YAML.
+_Dumper.add_representer(str, lambda dumper, text: dumper.represent_scalar(
+    'tag:yaml.org,2002:str', text, None if text.isprintable() else '"'))
 _MEASURED = {'tag:yaml.org,2002:' + kind for kind in ('int', 'float', 'timestamp')}
+
+
+def yaml_value(text: str) -> Any:
+    """Return the value of a YAML text of any origin.
+
+    :raises ValueError: it is not YAML, or larger than this module's limits
+    """
+    if len(text) > MAX_BYTES:
+        raise ValueError('more than {} characters'.format(MAX_BYTES))
+    try:
+        return yaml.load(text, Loader=_Loader)
+    except (yaml.YAMLError, RecursionError) as error:
+        raise ValueError(' '.join(str(error).split())) from None
+
+
+def yaml_text(value: object) -> str:
+    """Return a value as one line of YAML, which :func:`yaml_value` reads as it was."""
+    text: str = yaml.dump(value, Dumper=_Dumper, default_flow_style=True, width=1e9)
+    return text.split('\n')[0]
 
 
 def parse_yaml(text: str, origin: str) -> Section:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import math
 from typing import Optional, Tuple
 
-import yaml
+from mhri.base.config import yaml_value
 
 
 @dataclass(frozen=True)
@@ -53,8 +53,8 @@ class FieldView:
     def default_value(self) -> object:
         """The parsed default, None if there is none or it is unreadable."""
         try:
-            return yaml.safe_load(self.default)
-        except yaml.YAMLError:
+            return yaml_value(self.default)
+        except ValueError:
             return None
 
 
@@ -67,8 +67,8 @@ def typed_value(text: str) -> object:
     if not text.startswith('['):
         return text or None
     try:
-        return yaml.safe_load(text)
-    except yaml.YAMLError:
+        return yaml_value(text)
+    except ValueError:
         raise ValueError('its brackets do not fit; write e.g. [[1, 0], [1, 2]]') from None
 
 

@@ -20,7 +20,7 @@ from mhri.camera.jpeg import decode_jpeg
 _PNG = b'\x89PNG\r\n\x1a\n'
 # Offset of its number of bits per sample, before its kind of pixels, and the colour bit of that.
 _PNG_DEPTH, _PNG_COLOURS = 24, 2
-_JPEG = b'\xff\xd8\xff'
+_JPEG, _JPEG_END = b'\xff\xd8\xff', b'\xff\xd9'
 _REDUCED = {1: cv2.IMREAD_COLOR, 2: cv2.IMREAD_REDUCED_COLOR_2, 4: cv2.IMREAD_REDUCED_COLOR_4,
             8: cv2.IMREAD_REDUCED_COLOR_8}
 # Markers without a length, and those of a frame header: SOF0..15 without DHT, JPG and DAC.
@@ -33,7 +33,7 @@ def decode_compressed(fmt: str, data: Data,
     """Decode the data of a ``sensor_msgs/CompressedImage``.
 
     A jpeg has no checksum: damage in its middle shows as a smear and is not an error; a truncated
-    picture is.
+    picture is, but not one that lacks only its end marker, as some cameras send it.
 
     :param fmt: its ``format``
     :param data: its ``data``, bytes-like
@@ -72,7 +72,11 @@ def read_mosaic(fmt: str, data: Data) -> Optional[RawImage]:
 
 def _decode_colours(fmt: str, kind: str, data: Data, full: Size, factor: int) -> np.ndarray:
     """Return the RGB picture of coded data, a jpeg ``factor`` times smaller."""
-    rgb = decode_jpeg(data, full, factor) if kind == 'jpeg' else None
+    rgb = None
+    if kind == 'jpeg':
+        ended = _is_ended(data)
+        data = data if ended else bytes(data) + _JPEG_END
+        rgb = decode_jpeg(data, full, factor, damaged=ended)
     if rgb is None:
         # Ignore the orientation in the data (EXIF): a robot's camera is shown as it is mounted.
         flags = _REDUCED[factor] | cv2.IMREAD_IGNORE_ORIENTATION
@@ -137,7 +141,7 @@ def read_size(data: Data, fmt: str = '') -> Tuple[str, Size]:
     if head == _PNG:
         return 'png', _png_size(data)
     if head.startswith(_JPEG):
-        return 'jpeg', _jpeg_size(data)
+        return 'jpeg', _jpeg_head(data)[0]
     raise FrameError('{}: neither jpeg nor png, it begins with {}'.format(
         fmt or 'compressed image', head[:4].hex()))
 
@@ -151,8 +155,17 @@ def _png_size(data: Data) -> Size:
     return size
 
 
-def _jpeg_size(data: Data) -> Size:
-    """Return (width, height) of a jpeg; check both of its ends."""
+def _is_ended(data: Data) -> bool:
+    """Return whether a jpeg has its end marker.
+
+    Within the picture data a 0 or a restart marker always follows an 0xff, so the end marker is
+    unambiguous; some cameras add padding after it.
+    """
+    return bytes(data).rfind(_JPEG_END, _jpeg_head(data)[1]) >= 0
+
+
+def _jpeg_head(data: Data) -> Tuple[Size, int]:
+    """Return ((width, height) of a jpeg, offset of its picture data)."""
     size: Optional[Size] = None
     place = 2
     try:
@@ -174,8 +187,4 @@ def _jpeg_size(data: Data) -> Size:
     if size is None:
         raise FrameError('jpeg: corrupted, it does not say its size')
     check_size('jpeg', *size)
-    # Within the picture data a 0 or a restart marker always follows an 0xff, so the end marker is
-    # unambiguous; some cameras add padding after it.
-    if bytes(data).rfind(b'\xff\xd9', place) < 0:
-        raise FrameError('jpeg: truncated at {} bytes'.format(len(data)))
-    return size
+    return size, place

@@ -15,7 +15,7 @@ import numpy as np
 
 from mhri.base.wire import Data
 from mhri.camera import turbojpeg
-from mhri.camera.images import Size
+from mhri.camera.images import FrameError, Size
 
 _RGB = 0             # TJPF_RGB
 _FATAL = 1           # TJERR_FATAL; the other is a warning: the picture is usable
@@ -23,7 +23,8 @@ _HALF_BOTH_WAYS = 2  # TJSAMP_420: colour at half the size, as cv2 writes it
 _KEEP_BUFFER = 1024  # TJFLAG_NOREALLOC
 
 
-def decode_jpeg(data: Data, full: Size, factor: int = 1) -> Optional[np.ndarray]:
+def decode_jpeg(data: Data, full: Size, factor: int = 1,
+                damaged: bool = True) -> Optional[np.ndarray]:
     """Decode a jpeg.
 
     As with any decoder, damage in the middle of the data shows as a smear.
@@ -31,12 +32,16 @@ def decode_jpeg(data: Data, full: Size, factor: int = 1) -> Optional[np.ndarray]
     :param data: bytes-like, contiguous
     :param full: (width, height) from its header [pixels]
     :param factor: 1, 2, 4 or 8: reduction of the size, rounded up; larger is faster
+    :param damaged: whether it may be damaged
     :returns: rgb uint8 (h, w, 3), or None if the library is not installed, or cannot read the
         picture (e.g. in CMYK)
+    :raises FrameError: it is damaged, or cut off, and must not be
     """
     library = turbojpeg.load()
     if library is None:
-        return None
+        if damaged:
+            return None
+        raise FrameError('jpeg: truncated at {} bytes, or without its end marker'.format(len(data)))
     coded = np.frombuffer(data, np.uint8)
     width, height = (-(-side // factor) for side in full)
     pixels = np.empty((height, width, 3), np.uint8)
@@ -49,6 +54,8 @@ def decode_jpeg(data: Data, full: Size, factor: int = 1) -> Optional[np.ndarray]
             pixels.strides[0], height, _RGB, 0)
         if failed and library.tjGetErrorCode(decompressor) == _FATAL:
             return None
+        if failed and not damaged:
+            raise FrameError('jpeg: truncated at {} bytes'.format(coded.size))
         return pixels
     finally:
         library.tjDestroy(decompressor)

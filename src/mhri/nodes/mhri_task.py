@@ -10,8 +10,8 @@ import sys
 
 import actionlib
 import rospy
-import yaml
 
+from mhri.base.config import yaml_text
 from mhri.graph.ros.master_api import MasterApi, MasterError
 from mhri.graph.ros.rospy_inside import name_in
 from mhri.msg import RunTaskAction, RunTaskGoal, TaskState
@@ -104,6 +104,6 @@ def main():
         sys.exit('mhri_task: {}'.format(error))
     name_in()
     rospy.init_node('mhri_task', anonymous=True, disable_signals=True, disable_rostime=True)
-    status = run(robots, key, yaml.safe_dump(parameters, default_flow_style=True))
+    status = run(robots, key, yaml_text(parameters))
     rospy.signal_shutdown('done')
     sys.exit(status)

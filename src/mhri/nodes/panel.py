@@ -6,10 +6,12 @@ import os
 import shutil
 import sys
 
+from python_qt_binding.QtCore import qInstallMessageHandler, QtFatalMsg
 from python_qt_binding.QtWidgets import QApplication
 import rospy
 
 from mhri.graph.ros import log
+from mhri.graph.ros.master_api import master_uri, MasterError
 from mhri.graph.ros.rospy_inside import name_in
 from mhri.standalone import Standalone
 
@@ -40,6 +42,27 @@ def parse(argv):
     return parser.parse_args(argv)
 
 
+def start_qt(argv):
+    """Return the application; without a display exit with the reason, where Qt would abort."""
+    said = []
+
+    def hear(kind, _, text):
+        said.append(text)
+        if kind == QtFatalMsg:
+            where = [os.environ[key] for key in ('WAYLAND_DISPLAY', 'DISPLAY')
+                     if os.environ.get(key)]
+            print('the panel cannot start: it needs a screen, and {}; start it on a desktop, or '
+                  'by "ssh -X"'.format('that of DISPLAY={} cannot be used: {}'.format(
+                      where[-1], said[0]) if where else 'DISPLAY is not set'),
+                  file=sys.stderr, flush=True)
+            os._exit(1)
+    before = qInstallMessageHandler(hear)
+    try:
+        return QApplication(argv)
+    finally:
+        qInstallMessageHandler(before)
+
+
 def main():
     """Run the panel until it is closed; the exit status is the demo's, else 0."""
     options = parse(rospy.myargv(sys.argv)[1:])
@@ -55,7 +78,11 @@ def main():
         os.execvp('rqt', ['rqt', '--standalone', PLUGIN] + remappings + extra)
     # The screen logs on the GUI thread, and may wait for a master for hours.
     log.install(lives_on=True)
-    app = QApplication(sys.argv[:1])
+    try:
+        master_uri()
+    except MasterError as error:
+        sys.exit('the panel cannot start: {}'.format(error))
+    app = start_qt(sys.argv[:1])
     if options.replay:
         sys.exit(replay(app, options.replay))
     program = Standalone(sys.argv, options.settings, remember=not options.demo,

@@ -8,8 +8,7 @@ of them that names it, and ends with its result.
 from dataclasses import dataclass, replace
 from typing import Dict, List, Optional, Tuple
 
-import yaml
-
+from mhri.base.config import yaml_text, yaml_value
 from mhri.base.task_views import KindView, Progress, RunView, TasksView, TaskView
 from mhri.base.task_words import ended_line
 from mhri.base.text import tidy_text
@@ -33,12 +32,12 @@ class Goal:
 def with_team(parameters: str, robots: Tuple[str, ...]) -> str:
     """Return parameters (YAML) that keep a robot's place in a team when it starts alone."""
     try:
-        values = yaml.safe_load(parameters or '{}')
-    except yaml.YAMLError:
+        values = yaml_value(parameters or '{}')
+    except ValueError:
         return parameters
     if len(robots) < 2 or not isinstance(values, dict):
         return parameters
-    return str(yaml.safe_dump({TEAM: list(robots), **values}, default_flow_style=True))
+    return yaml_text({TEAM: list(robots), **values})
 
 
 class TaskBook:

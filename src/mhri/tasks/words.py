@@ -3,9 +3,7 @@
 """Parses a task typed in a terminal: ``bot1 goto 2.0 1.5``."""
 from typing import Dict, List, Mapping, Sequence, Tuple
 
-import yaml
-
-from mhri.base.config import ConfigError
+from mhri.base.config import ConfigError, yaml_text, yaml_value
 from mhri.tasks.base import REQUIRED, TaskKind
 
 
@@ -36,11 +34,11 @@ def parameters_of(words: Sequence[str], kinds: Mapping[str, TaskKind]
                     word, kind.key, ', '.join(names)))
             name, value = names[number], word
         try:
-            parameters[name] = yaml.safe_load(value)
-        except yaml.YAMLError:
+            parameters[name] = yaml_value(value)
+        except ValueError:
             raise TaskWordsError('{}: {} cannot be read'.format(name, value)) from None
     try:
-        kind.read(yaml.safe_dump(parameters))
+        kind.read(yaml_text(parameters))
     except ConfigError as error:
         raise TaskWordsError(str(error)) from None
     return [name for name in words[0].split(',') if name], kind.key, parameters

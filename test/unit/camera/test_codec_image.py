@@ -136,7 +136,8 @@ def with_size(jpeg, width, height):
 
 @pytest.mark.parametrize('what, data, words', [
     ('nothing', b'', 'empty'), ('text', b'hello world, hello', 'neither jpeg nor png'),
-    ('half a jpeg', JPEG[:len(JPEG) // 2], 'truncated'), ('no end', JPEG[:-2], 'truncated'),
+    ('half a jpeg', JPEG[:len(JPEG) // 2], 'truncated'),
+    ('most of a jpeg', JPEG[:-40], 'truncated'),
     ('a jpeg head', JPEG[:30], 'truncated'), ('three bytes', JPEG[:3], 'truncated'),
     ('a jpeg without size', b'\xff\xd8\xff\xda\x00\x02\xff\xd9', 'its size'),
     ('no marker', JPEG[:20] + b'\0' * 400, 'no marker'),
@@ -149,6 +150,16 @@ def with_size(jpeg, width, height):
 def test_wrong_pictures_are_refused(what, data, words, decoder):
     with pytest.raises(FrameError, match=words):
         decode_compressed('jpeg', data)
+
+
+@pytest.mark.parametrize('missing', [1, 2])
+def test_a_whole_picture_without_its_end_marker_is_shown(missing, decoder):
+    if decoder == 'cv2':
+        with pytest.raises(FrameError, match='end marker'):
+            decode_compressed('jpeg', JPEG[:-missing])
+    else:
+        rgb = decode_compressed('jpeg', JPEG[:-missing])[0]
+        assert np.array_equal(rgb, decode_compressed('jpeg', JPEG)[0])
 
 
 def test_what_cameras_add_is_ignored():

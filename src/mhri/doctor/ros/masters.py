@@ -9,9 +9,8 @@ from urllib.parse import urlsplit
 from mhri.doctor.facts import Master, SILENT
 from mhri.doctor.system import MODE
 from mhri.graph.ros.parallel_calls import Answers, connectable
-from mhri.graph.ros.master_api import MasterApi, MasterError
+from mhri.graph.ros.master_api import DEFAULT_PORT, MasterApi, MasterError, uri_problem
 
-DEFAULT_PORT = 11311
 LIMIT_S = 0.3
 MOST = 16
 _VARIABLE = b'ROS_MASTER_URI='
@@ -21,18 +20,11 @@ _PORT = (b'-p', b'--port')
 
 def parse_uri(uri):
     """Return the :class:`Master` of a URI, with the problem of an invalid URI."""
-    try:
-        parts = urlsplit(uri.strip())
-        host, port = parts.hostname or '', parts.port
-    except ValueError as error:
-        return Master(uri, '', 0, SILENT, uri_problem=str(error))
-    if parts.scheme != 'http' or not host or uri != uri.strip():
-        return Master(uri, host, port or 0, SILENT, uri_problem='it has the form '
-                      'http://<address>:{}'.format(DEFAULT_PORT))
-    if port is None:
-        return Master(uri, host, 0, SILENT, uri_problem='it names no port; the usual one is '
-                      '{}'.format(DEFAULT_PORT))
-    return Master(uri, host, port)
+    problem = uri_problem(uri)
+    if problem:
+        return Master(uri, '', 0, SILENT, uri_problem=problem)
+    parts = urlsplit(uri)
+    return Master(uri, parts.hostname, parts.port)
 
 
 def uris_in_use(folder='/proc'):

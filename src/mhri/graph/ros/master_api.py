@@ -7,11 +7,13 @@ caller for minutes.
 """
 import contextlib
 import http.client
+from urllib.parse import urlsplit
 import xml.parsers.expat
 import xmlrpc.client
 
 import rosgraph
 
+DEFAULT_PORT = 11311
 ERRORS = (OSError, xmlrpc.client.Error, http.client.HTTPException)
 # xmlrpc also raises these if another program answers there: no XML, no text, not three values.
 _NONSENSE = (xml.parsers.expat.ExpatError, ValueError, TypeError, LookupError, AttributeError,
@@ -20,6 +22,30 @@ _NONSENSE = (xml.parsers.expat.ExpatError, ValueError, TypeError, LookupError, A
 
 class MasterError(Exception):
     """The master is unreachable, or refused the call; the text has the reason and the address."""
+
+
+def uri_problem(uri):
+    """Return why a text is not the URI of a master, '' if it is."""
+    try:
+        parts = urlsplit(uri.strip())
+        port = parts.port
+    except ValueError as error:
+        return str(error)
+    if parts.scheme != 'http' or not parts.hostname or uri != uri.strip():
+        return 'it has the form http://<address>:{}'.format(DEFAULT_PORT)
+    return '' if port else 'it names no port; the usual one is {}'.format(DEFAULT_PORT)
+
+
+def master_uri():
+    """Return the URI of the master.
+
+    :raises MasterError: ``ROS_MASTER_URI`` (or the remapping ``__master``) is not one
+    """
+    uri = rosgraph.get_master_uri()
+    problem = uri_problem(uri)
+    if problem:
+        raise MasterError('ROS_MASTER_URI is {!r}: {}'.format(uri[:200], problem))
+    return uri
 
 
 class TimedTransport(xmlrpc.client.Transport):
@@ -42,10 +68,11 @@ class MasterApi:
     :param caller_id: caller id of the calls
     :param timeout_s: timeout of one call [s]
     :param uri: the master; default ``ROS_MASTER_URI``
+    :raises MasterError: that is not a URI
     """
 
     def __init__(self, caller_id, timeout_s=1.0, uri=None):
-        self.uri = uri or rosgraph.get_master_uri()
+        self.uri = uri or master_uri()
         self._caller_id = caller_id
         self._proxy = xmlrpc.client.ServerProxy(self.uri, transport=TimedTransport(timeout_s))
 

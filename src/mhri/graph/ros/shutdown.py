@@ -11,6 +11,7 @@ import threading
 import rospy
 
 from mhri.graph.ros import log
+from mhri.graph.ros.master_api import master_uri, MasterError
 from mhri.graph.ros.master_watch import log_without_master
 from mhri.graph.ros.peers import limit_peers
 from mhri.graph.ros.rospy_inside import end_by_own_name, ended_by_hand, name_in
@@ -46,7 +47,12 @@ def init_node(name, namespace='/', **options):
     the terminal (SIGHUP) would end the node without its last messages.
 
     A node that is not up 2 s after a signal has published nothing yet, and is ended immediately.
+    The program exits with the reason if ``ROS_MASTER_URI`` cannot be used.
     """
+    try:
+        master_uri()
+    except MasterError as error:
+        sys.exit('{} cannot start: {}'.format(name, error))
     # Python writes the number of a signal there at once, on whichever thread.
     receives, sends = socket.socketpair()
     sends.setblocking(False)

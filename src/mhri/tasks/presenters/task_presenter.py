@@ -8,8 +8,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 import time
 
-import yaml
-
+from mhri.base.config import yaml_text
 from mhri.base.gui.pending import Pace
 from mhri.base.part import MISSION, Part, ROBOTS
 from mhri.base.task_words import carry_on_line, start_problem
@@ -205,7 +204,7 @@ class TaskPresenter(Part):
         :param robots: their names
         :param parameters: {name: value}; others have their defaults
         """
-        self._begin(Goal(key, tuple(robots), yaml.safe_dump(parameters, default_flow_style=True)))
+        self._begin(Goal(key, tuple(robots), yaml_text(parameters)))
 
     def _begin(self, goal):
         problem = start_problem(self._view, self._tasks, goal.robots)

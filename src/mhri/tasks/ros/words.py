@@ -3,8 +3,7 @@
 """Messages of tasks: available kinds, and the progress of each robot."""
 import math
 
-import yaml
-
+from mhri.base.config import yaml_text
 from mhri.msg import TaskField, TaskKind, TaskState
 from mhri.tasks.base import REQUIRED
 
@@ -16,8 +15,7 @@ def kind_message(kind):
 
 
 def _field_message(field):
-    default = '' if field.default == REQUIRED else yaml.safe_dump(
-        field.default, default_flow_style=True).split('\n')[0]
+    default = '' if field.default == REQUIRED else yaml_text(field.default)
     return TaskField(name=field.name, unit=field.unit, text=field.text, default_value=default,
                      least=field.least, greatest=field.greatest,
                      choices=list(field.choices))
