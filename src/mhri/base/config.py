@@ -231,7 +231,7 @@ class _Dumper(yaml.SafeDumper):  # type: ignore[misc]
 
 _INT, _FLOAT = ('tag:yaml.org,2002:' + kind for kind in ('int', 'float'))
 # Numbers as in YAML 1.2. By 1.1, which PyYAML reads, 5e-02 is a text, 1_5 is 15, 1:30 is 90 and
-# 010 is 8.
+# 010 is 8. What begins with more zeros, or has a long exponent, is an identifier.
 for _yaml in (_Loader, _Dumper):
     _yaml.yaml_implicit_resolvers = {
         first: [row for row in rows if row[0] not in (_INT, _FLOAT)]
@@ -239,7 +239,7 @@ for _yaml in (_Loader, _Dumper):
     _yaml.add_implicit_resolver(_INT, re.compile(
         r'[-+]?(0|[1-9][0-9]*|0x[0-9a-fA-F]+)\Z'), [*'-+0123456789'])
     _yaml.add_implicit_resolver(_FLOAT, re.compile(
-        r'[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?\Z'
+        r'[-+]?((0|[1-9][0-9]*)(\.[0-9]*)?|\.[0-9]+)([eE][-+]?[0-9]{1,3})?\Z'
         r'|[-+]?\.(inf|Inf|INF)\Z|\.(nan|NaN|NAN)\Z'), [*'-+.0123456789'])
 # Without it, a line break in a text is one in the YAML.
 _Dumper.add_representer(str, lambda dumper, text: dumper.represent_scalar(

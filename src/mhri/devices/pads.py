@@ -3,7 +3,7 @@
 """The choice of a pad among several, and of its profile."""
 from collections import Counter
 from dataclasses import dataclass, replace
-from typing import Dict, Iterable, List, Optional, Sequence, Tuple
+from typing import Dict, Iterable, List, Sequence, Tuple
 
 from mhri.base.config import ConfigError, parse_all
 from mhri.devices.profile import parse_profile, Profile
@@ -43,6 +43,17 @@ def same_guid(guid: str) -> str:
     return guid[:4] + '0000' + guid[8:]
 
 
+def usb_of_guid(guid: str) -> str:
+    """Return ``vendor:product`` of a GUID of SDL, '' if it has none.
+
+    Its 16 bytes are bus, check sum, vendor, 0, product, 0, ...: two bytes each, little-endian.
+    """
+    if len(guid) != 32 or guid[12:16] != '0000' or guid[20:24] != '0000':
+        return ''
+    vendor, product = (guid[at + 2:at + 4] + guid[at:at + 2] for at in (8, 16))
+    return '' if '0000' in (vendor, product) else '{}:{}'.format(vendor, product).lower()
+
+
 def is_guid(text: str) -> bool:
     """Return whether a text is a GUID of SDL: 32 hexadecimal digits."""
     return len(text) == 32 and set(text.lower()) <= _HEXADECIMAL
@@ -67,11 +78,19 @@ def _parse_named(text: str, path: str) -> Profile:
     return profile
 
 
+def _may_be(profile: Profile, usb: str) -> bool:
+    """Return whether a pad of a vendor and product ('' if unknown) may be one of a profile's."""
+    known = [usb_of_guid(guid) for guid in profile.match.guids]
+    return not usb or not known or usb in known
+
+
 def choose_profile(profiles: Sequence[Profile], name: str, guid: str = '') -> Tuple[Profile, str]:
     """Return (profile for a pad, note for the operator, '' without one).
 
     Profiles with its GUID come first; then the profile with the longest part of its name, since
     'Wireless Controller' matches many pads and 'Xbox Wireless Controller' one; then ``generic``.
+    Clones have the names of others, and their buttons elsewhere: a name counts only where vendor
+    and product are those of the profile, or one of the two does not say them.
 
     :param profiles: in the order of preference
     :raises LookupError: nothing matches, and there is no profile ``generic``
@@ -80,14 +99,11 @@ def choose_profile(profiles: Sequence[Profile], name: str, guid: str = '') -> Tu
         for profile in profiles:
             if same_guid(guid) in [same_guid(own) for own in profile.match.guids]:
                 return profile, ''
-    best: Optional[Profile] = None
-    length = 0
-    for profile in profiles:
-        for part in profile.match.names:
-            if part.lower() in name.lower() and len(part) > length:
-                best, length = profile, len(part)
-    if best is not None:
-        return best, ''
+    parts = [(len(part), -place) for place, profile in enumerate(profiles)
+             if _may_be(profile, usb_of_guid(guid))
+             for part in profile.match.names if part.lower() in name.lower()]
+    if parts:
+        return profiles[-max(parts)[1]], ''
     for profile in profiles:
         if profile.name == GENERIC:
             return profile, ('no profile knows this pad: the generic one is used; if it does not '

@@ -54,17 +54,6 @@ class PedalRequest:
         return self.device.lower() in candidate.name.lower()
 
 
-def usb_of_guid(guid: str) -> str:
-    """Return ``vendor:product`` of a GUID of SDL, '' if it has none.
-
-    Its 16 bytes are bus, check sum, vendor, 0, product, 0, ...: two bytes each, little-endian.
-    """
-    if len(guid) != 32 or guid[12:16] != '0000' or guid[20:24] != '0000':
-        return ''
-    vendor, product = (guid[at + 2:at + 4] + guid[at:at + 2] for at in (8, 16))
-    return '' if vendor == '0000' else '{}:{}'.format(vendor, product).lower()
-
-
 def choose(candidates: Iterable[Candidate], request: PedalRequest,
            profiles: Mapping[str, PedalProfile]) -> Tuple[Candidate, PedalProfile]:
     """Return (candidate, profile).

@@ -55,6 +55,18 @@ def test_no_guid_and_no_name_stands_in_two_profiles():
     ('Logitech Logitech Cordless RumblePad 2', '', 'f710_d'),
     ('Thrustmaster T.16000M', '03000000f51b00006412000000010000', 'generic'),
     ('', '', 'generic'),
+    # Clones: an Xbox layout, unknown ones, and a name that says the wrong maker.
+    ('8BitDo Ultimate 2C Wireless Controller', '03000000c82d00000a31000014010000', 'generic'),
+    ('SHENGHIC 2009/0708ZXW-V1Inc. PLAYSTATION(R)3Conteroller',
+     '03000000100800000100000010010000', 'generic'),
+    ('Wireless Controller', '05000000c82d00000160000000010000', 'generic'),
+    ('Xbox Wireless Controller', '050000005e040000200b000017050000', 'generic'),
+    ('DualSense Wireless Controller', '030000004c0500000100000000010000', 'generic'),
+    # A virtual pad has no product.
+    ('DualSense Wireless Controller', 'ff00000009120000000000000000' + '7600', 'ps5'),
+    # Of the maker, by another bus or in another version.
+    ('Wireless Controller', '060000004c050000c405000007770000', 'ps4'),
+    ('Microsoft X-Box One S pad', '030000005e040000ea02000008040000', 'xbox'),
 ])
 def test_profile_of_a_pad(name, guid, profile):
     found, note = choose_profile(PROFILES, name, guid)
@@ -128,6 +140,13 @@ def test_a_bad_file_does_not_hide_the_good_ones():
     assert [profile.name for profile in profiles] == ['a']
     assert [str(error).split(':')[0] for error in errors] == ['b.yaml', 'd.yaml', 'e.yaml']
     assert "expected 'b'" in str(errors[0])
+
+
+def test_a_profile_that_names_no_device_counts_by_its_name():
+    own, _ = load_profiles([('mine.yaml', MINIMAL.format('mine')
+                             + 'match: {names: ["8BitDo Ultimate 2C"]}\n')])
+    assert choose_profile(own + PROFILES, '8BitDo Ultimate 2C Wireless Controller',
+                          '03000000c82d00000a31000014010000')[0].name == 'mine'
 
 
 def test_own_profile_before_a_shipped_one_for_the_same_guid():

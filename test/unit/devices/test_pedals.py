@@ -9,7 +9,8 @@ import re
 import pytest
 
 from mhri.base.config import ConfigError
-from mhri.devices.pedal_choice import Candidate, choose, NoPedal, usb_of_guid, PedalRequest
+from mhri.devices.pads import usb_of_guid
+from mhri.devices.pedal_choice import Candidate, choose, NoPedal, PedalRequest
 from mhri.devices.pedals import (
     AXES, DRIVE, ENABLE, KEYS, load_pedal_profiles, parse_pedal_profile, PedalState)
 from mhri.driving.pad_accessories import PadAccessories, Use

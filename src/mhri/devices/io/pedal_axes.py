@@ -5,7 +5,8 @@ import time
 
 from mhri.devices.io.reader import DeviceAbsent, DeviceLost, Reading
 from mhri.devices.io.sdl import Joysticks
-from mhri.devices.pedal_choice import Candidate, usb_of_guid
+from mhri.devices.pads import usb_of_guid
+from mhri.devices.pedal_choice import Candidate
 from mhri.devices.pedals import AXES, DRIVE, PedalState
 
 
