@@ -87,6 +87,8 @@ class RobotPlace:
 
     def __init__(self) -> None:
         self.odometry: Optional[Odometry] = None
+        #: what is wrong with it, '' if nothing
+        self.odometry_note = ''
         self._gap_s = GAP_S
         # Time of the last motion capture.
         self.seen_at: Optional[float] = None
@@ -131,10 +133,13 @@ class RobotPlace:
             return 'it is placed by {} already{}'.format(
                 WORDS[rests.by], ': correct its localisation instead' if rests.by == TF else '')
         if self.odometry is None or now_s - self.odometry.at_s > GAP_S:
-            return 'it has no odometry, so it cannot be placed by hand'
+            return self._no_odometry() + ', so it cannot be placed by hand'
         self.hand = composed(pose, inverse(self.odometry.pose))
         self._lost = ''
         return ''
+
+    def _no_odometry(self) -> str:
+        return self.odometry_note or 'it has no odometry'
 
     def take_back(self) -> None:
         """Remove the placement by hand."""
@@ -163,7 +168,7 @@ class RobotPlace:
         if self._lost:
             return Place(text=self._lost)
         if self.odometry is None:
-            return Place(text='it is not placed: it has no odometry')
+            return Place(text='it is not placed: ' + self._no_odometry())
         return Place(text='it is not placed: {}{}'.format(
             self._no_tf + ': ' if self._no_tf else '', REMEDY))
 

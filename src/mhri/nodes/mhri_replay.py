@@ -40,7 +40,7 @@ def main():
         sys.exit('cannot replay {}'.format(error))
     init_node('mhri_replay')
     for problem in kept.bags.problems:
-        rospy.logwarn('left out: %s', problem)
+        rospy.logwarn('the recording: %s', problem)
     # Recorded topics must not reach driven robots.
     if any(MasterApi(rospy.get_name(), timeout_s=5.0).call_many(
             [('lookupService', STOP_SERVICE)])):

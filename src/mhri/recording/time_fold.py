@@ -5,11 +5,12 @@
 A clock that leaps, or is set only after the first messages (a computer without a clock of its own,
 ``/use_sim_time``), makes a recording of 20 s years long.
 """
+from datetime import datetime
 from typing import Iterable, List, Sequence, Tuple
 
 import numpy as np
 
-from mhri.recording.recording import duration_text, is_simulated, moment_text
+from mhri.recording.recording import duration_text, is_simulated
 
 _NS = 10 ** 9
 # A longer time without any message is a gap, of which this much is kept.
@@ -52,9 +53,9 @@ class TimeFold:
 
     def _named(self) -> List[str]:
         """Return sentences about what is left out."""
-        return ['{} messages of {} are left out: nothing else is near that time'.format(
-            count, _when(begin)) for begin, _, count in self._strays] + [
-            'a gap of {} after {} is left out, times of day {} it are shown without it'.format(
+        return ['{} message{} of {} left out: nothing else is near that time'.format(
+            count, 's' * (count > 1), _when(begin)) for begin, _, count in self._strays] + [
+            'a gap of {} after {} left out: times of day {} it are shown without it'.format(
                 duration_text((begin - end) / _NS), _when(end), 'after' if shift < 0 else 'before')
             for (_, end, _), (begin, _, _), shift in zip(
                 self._parts, self._parts[1:], self._shifts[1:])]
@@ -85,4 +86,5 @@ class TimeFold:
 
 def _when(time_ns: int) -> str:
     time_s = time_ns / _NS
-    return '{:.3f} s'.format(time_s) if is_simulated(time_s) else moment_text(time_s)
+    return '{:.3f} s'.format(time_s) if is_simulated(time_s) else \
+        '{:%Y-%m-%d %H:%M:%S}'.format(datetime.fromtimestamp(time_s))

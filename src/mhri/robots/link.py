@@ -60,9 +60,10 @@ class Motion:
         """What is wrong with it, for the operator; '' if nothing is."""
         if not self.problem:
             return ''
-        return 'its odometry has an impossible {}: {}'.format(
-            self.problem, 'no heading is known, its driver has to be mended'
-            if self.heading_rad is None else 'it is left out')
+        if self.heading_rad is None:
+            return 'no heading: its odometry has an {}; its driver has to send one of length ' \
+                '1'.format(self.problem)
+        return 'its odometry has an impossible {}'.format(self.problem)
 
     @property
     def speed_mps(self) -> float:

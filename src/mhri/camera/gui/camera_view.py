@@ -1,6 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """A robot's camera: picture, state of the stream, choice of transport, and stills."""
+import math
+
 from python_qt_binding.QtCore import QTimer, Signal
 from python_qt_binding.QtWidgets import QComboBox, QSizePolicy
 
@@ -68,7 +70,10 @@ def source_text(status, frame):
         return status.detail
     if frame.grey_range is None:
         return status.source
-    return '{}\nblack is {:.6g}, white is {:.6g}'.format(status.source, *frame.grey_range)
+    low, high = frame.grey_range
+    digits = max(0, math.ceil(2.0 - math.log10(high - low)))
+    return '{}\nblack is {:.{}f}, white is {:.{}f}'.format(
+        status.source, low, digits, high, digits)
 
 
 def shorter_stream_texts(text):

@@ -299,8 +299,8 @@ class CameraFeed:
         elif not (isinstance(line, Subscription) and line.topic == offer.topic):
             self._subscribe(session, offer)
         self._watch(silent)
-        session.source = ''.join([offer.topic if offer else ''] + [
-            '; {} sends no picture'.format(one.topic) for one in silent])
+        session.source = '\n'.join([offer.topic if offer else ''] + [
+            '{} sends no picture'.format(one.topic) for one in silent])
 
     def _subscribe(self, session, offer):
         """Switch to an offer if its publisher answers."""

@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Counts impossible values on a topic, and logs them at most once a second."""
+"""Counts impossible values on a topic, and logs them ever more rarely, at most once a second."""
+import math
 import threading
 
 import genpy
@@ -8,7 +9,7 @@ import rospy
 
 from mhri.graph.ros.rospy_inside import keep_link
 
-LOG_EVERY_S = 1.0
+LOG_EVERY_S, LOG_AT_LEAST_S = 1.0, 60.0
 
 
 class Refusals:
@@ -23,7 +24,7 @@ class Refusals:
         self._clock = clock
         self._lock = threading.Lock()
         self._count = 0
-        self._logged_at = None
+        self._due_at, self._pause_s = -math.inf, LOG_EVERY_S
 
     @property
     def count(self):
@@ -56,7 +57,8 @@ class Refusals:
         with self._lock:
             self._count += 1
             count = self._count
-            if self._logged_at is not None and now - self._logged_at < LOG_EVERY_S:
+            if now < self._due_at:
                 return
-            self._logged_at = now
+            self._due_at = now + self._pause_s
+            self._pause_s = min(LOG_AT_LEAST_S, 2.0 * self._pause_s)
         rospy.logwarn('%s: %s %s; left out (%d so far)', self._topic, problem, verdict, count)

@@ -100,6 +100,7 @@ class PlaceKeeper:
     def _look_at(self, robot, frames, now):
         """Process the newest data of one robot; called with the lock held."""
         place = self._of(robot.name)
+        place.odometry_note = robot.odometry_note
         if robot.odometry is not None and robot.odometry is not place.odometry:
             place.drive(robot.odometry)
         if robot.seen_at is not None and place.seen_at != robot.seen_at[1]:

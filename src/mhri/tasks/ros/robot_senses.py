@@ -31,9 +31,9 @@ class RobotSenses:
         self.body = Body(robot_type.radius_m + (NARROW_M if by_depth else 0.0),
                          robot_type.limits)
         self.trail = Trail()
-        # Pose by odometry, the newest :class:`Odometry`, and the name of its frame.
+        # Pose by odometry, the newest :class:`Odometry`, the name of its frame, and what is wrong.
         self.pose = self.odometry = None
-        self.odometry_frame = self._odometry_note = ''
+        self.odometry_frame = self.odometry_note = ''
         # By motion capture: (pose, time of receipt [s]).
         self.seen_at = None
         self._streams = RobotStreams(name, robot_type, (ODOMETRY, MOCAP, SCAN, BATTERY_CHARGE),
@@ -86,7 +86,7 @@ class RobotSenses:
         """Process the messages received since the last call."""
         newest = self._streams[ODOMETRY].take()
         if newest is not None:
-            self._odometry_note = newest.value.motion.note
+            self.odometry_note = newest.value.motion.note
             if newest.value.motion.pose is not None:
                 self._go(newest.value, newest.at_s)
         captured = self._streams[MOCAP].take()
@@ -164,7 +164,7 @@ class RobotSenses:
         """Return {name in :class:`Facts`: age [s], None before the first data}."""
         now = self._clock()
         return dict(odometry_age_s=None if self.odometry is None else now - self.odometry.at_s,
-                    odometry_note=self._odometry_note,
+                    odometry_note=self.odometry_note,
                     scan_age_s=None if self._scan_at is None else now - self._scan_at)
 
     @property
