@@ -95,7 +95,7 @@ def desk(panel, four_robots):
 def test_an_unchecked_robot_is_started_at_once(desk):
     desk.presenter.start_task('square', ['bot2'], {'side': 1.0})
     desk.draw()
-    assert desk.client.sent == [Goal('square', ('bot2',), '{side: 1.0}\n')]
+    assert desk.client.sent == [Goal('square', ('bot2',), '{side: 1.0}')]
     desk.draw()
     assert len(desk.client.sent) == 1 and desk.client.started == 1
 
