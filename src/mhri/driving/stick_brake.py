@@ -61,12 +61,12 @@ class StickBrake:
         self._asked, self._slowed_at = asked, -math.inf
         self._remembers |= self.reads
 
-    def move(self, pose: Pose, anew: bool = False) -> None:
-        """Handle the robot's pose by its odometry.
+    def move(self, pose: Optional[Pose], anew: bool = False) -> None:
+        """Handle the robot's pose by its odometry, None without a heading.
 
         :param anew: whether odometry has jumped, which invalidates earlier obstacles
         """
-        if self._pose is None or anew:
+        if anew or (pose is None) is not (self._pose is None):
             self._seen.clear()
             self._scan_at = None
         self._pose = pose

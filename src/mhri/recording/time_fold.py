@@ -10,6 +10,7 @@ from typing import Iterable, List, Sequence, Tuple
 
 import numpy as np
 
+from mhri.base.text import listed
 from mhri.recording.recording import duration_text, is_simulated
 
 _NS = 10 ** 9
@@ -43,8 +44,9 @@ class TimeFold:
             else:
                 parts.append((begin, end, count))
         largest = max(parts, key=lambda part: part[2])
-        self._strays = [part for part in parts if part[2] <= min(MAX_STRAYS, largest[2] // 10)]
-        self._parts = [part for part in parts if part not in self._strays]
+        most = min(MAX_STRAYS, largest[2] // 10)
+        self._strays = [part for part in parts if part[2] <= most]
+        self._parts = [part for part in parts if part[2] > most]
         self._begins, self._ends, _ = np.array(self._parts, np.int64).T
         gaps = np.maximum(self._begins[1:] - self._ends[:-1] - KEPT_NS, 0)
         shifts = np.concatenate(([0], -np.cumsum(gaps)))
@@ -53,12 +55,13 @@ class TimeFold:
 
     def _named(self) -> List[str]:
         """Return sentences about what is left out."""
-        return ['{} message{} of {} left out: nothing else is near that time'.format(
-            count, 's' * (count > 1), _when(begin)) for begin, _, count in self._strays] + [
-            'a gap of {} after {} left out: times of day {} it are shown without it'.format(
-                duration_text((begin - end) / _NS), _when(end), 'after' if shift < 0 else 'before')
-            for (_, end, _), (begin, _, _), shift in zip(
-                self._parts, self._parts[1:], self._shifts[1:])]
+        strays = ['{} of {}'.format(count, _when(begin)) for begin, _, count in self._strays]
+        gaps = ['{} after {}'.format(duration_text((begin - end) / _NS), _when(end))
+                for (_, end, _), (begin, _, _) in zip(self._parts, self._parts[1:])]
+        return ['messages with no others near their time are left out: '
+                + listed(strays)] * bool(strays) + [
+            'gaps are left out (times of day beyond one may be off by its length): '
+            + listed(gaps)] * bool(gaps)
 
     def spans(self, spans: Sequence[Span]) -> List[Span]:
         """Return spans without the gaps, and without strays unless there is nothing else."""

@@ -7,6 +7,8 @@ from pathlib import Path
 from play_guard import load
 import pytest
 
+from support.rotations import NONE, ROTATIONS
+
 GUARD = load(str(Path(__file__).resolve().parents[3] / 'utils' / 'remote' / 'mhri_guard'))
 ZERO, INF, NAN = GUARD['ZERO'], math.inf, math.nan
 SOUTH = -0.5 * math.pi
@@ -226,3 +228,14 @@ def test_it_brakes_for_what_is_there_at_a_speed_of_one(robot_m, brakes):
     sight.move((robot_m, 0.0, 0.0), 0.1)
     wanted = (1.0 if robot_m >= 0.0 else -1.0, 0.0, 0.0)
     assert (sight.allow(wanted, 0.1) != wanted) == brakes
+
+
+@pytest.mark.parametrize('turn, heading', ROTATIONS.values(), ids=ROTATIONS)
+def test_a_rotation_has_the_heading_that_it_has_on_the_host(turn, heading):
+    found = GUARD['heading_of'](*turn)
+    assert math.remainder(found - heading, 2.0 * math.pi) == pytest.approx(0.0, abs=1e-6)
+
+
+@pytest.mark.parametrize('turn', NONE.values(), ids=NONE)
+def test_what_is_no_rotation_gives_the_guard_no_pose_to_go_by(turn):
+    assert math.isnan(GUARD['heading_of'](*turn))

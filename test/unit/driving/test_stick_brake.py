@@ -175,6 +175,19 @@ def test_with_odometry_what_came_too_near_is_remembered(brake):
     assert brake.allow(FAST, 1.1).linear_mps == 0.0
 
 
+def test_where_the_heading_is_lost_a_new_scan_is_required_once_and_nothing_is_remembered(brake):
+    """What is remembered would move along with a robot that nobody knows the pose of."""
+    brake.see(ahead(0.15), 1.0)
+    brake.see(ahead(9.0), 1.1)
+    brake.move(None)
+    assert brake.allow(FAST, 1.1).linear_mps == 0.0 and brake.state(1.1)[0] == NO_SCAN
+    brake.see(ahead(9.0), 1.2)
+    brake.move(None)
+    assert brake.allow(FAST, 1.2) == FAST, 'as without odometry'
+    brake.move(Pose(0.0, 0.0, 0.0))
+    assert brake.allow(FAST, 1.2).linear_mps == 0.0, 'that scan was made nobody knows where'
+
+
 def test_what_was_seen_before_it_was_switched_off_is_not_trusted_after(brake):
     brake.see(ahead(9.0), 1.0)
     brake.ask(False)

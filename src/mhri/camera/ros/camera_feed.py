@@ -96,16 +96,20 @@ class CameraFeed:
         """Return the offers, best first, among the published {topic: type}."""
         return find_offers(self.kind, self._topics, published)
 
-    def line_of(self, session, offer):
-        """Return (class, arguments) of the subscription to an offer."""
-        return Subscription, offer.topic, PICTURE_RELAY.relaying(
-            offer.topic, session.receive, self.kind)
+    def line_of(self, session, offer, receive):
+        """Return (class, arguments) of the subscription to an offer.
 
-    def samples_of(self, session, offer, grant, native_hz):
+        :param receive: function of (type, bytes)
+        """
+        return Subscription, offer.topic, receive
+
+    def samples_of(self, session, offer, receive, grant, native_hz):
         """Return the same for single pictures of an offer."""
-        return (Samples, offer.topic, PICTURE_RELAY.relaying(
-            offer.topic, session.receive, self.kind), session.explain, grant.rate_hz, native_hz,
-            self._clock)
+        return (Samples, offer.topic, receive, session.explain, grant.rate_hz, native_hz,
+                self._clock)
+
+    def _relaying(self, session, offer):
+        return PICTURE_RELAY.relaying(offer.topic, session.receive, self.kind)
 
     def close(self, wait_s=0.0):
         """Stop decoding and unregister the topic, the latter on the feed's own thread.
@@ -268,7 +272,7 @@ class CameraFeed:
         for topic, offer in wanted.items():
             if topic not in self._watched and reachable(rospy.get_name(), topic):
                 session = self.new_session(lambda: (None, 1.0 / LOOK_S))
-                make, *args = self.line_of(session, offer)
+                make, *args = self.line_of(session, offer, session.receive)
                 self._watched[topic] = session, make(*args)
 
     def _look(self, session, transport, grant):
@@ -295,7 +299,8 @@ class CameraFeed:
             if not (line and line.topic == offer.topic
                     and getattr(line, 'rate_hz', None) == grant.rate_hz):
                 native_hz = self._known.get(offer.topic, (None, None))[1]
-                self._hold(*self.samples_of(session, offer, grant, native_hz))
+                self._hold(*self.samples_of(
+                    session, offer, self._relaying(session, offer), grant, native_hz))
         elif not (isinstance(line, Subscription) and line.topic == offer.topic):
             self._subscribe(session, offer)
         self._watch(silent)
@@ -309,7 +314,7 @@ class CameraFeed:
             self._speakers.skip(offer.topic)
             return
         session.explain('no {} has come yet'.format(self.word), 'waiting for ' + offer.topic)
-        self._hold(*self.line_of(session, offer))
+        self._hold(*self.line_of(session, offer, self._relaying(session, offer)))
 
     def _why_nothing(self, transport, offers):
         """Return why there is nothing to subscribe to, also in terms of ROS."""

@@ -79,14 +79,16 @@ class BrakeEye:
             return
         self._pose_at = now
         reading = self._read_odometry(message)
-        pose = reading and reading.motion.pose
+        if reading is None or not reading.motion.is_possible():
+            return
+        motion, header, self._mounts.frames, source = reading
+        pose, anew = motion.pose, False
         if pose is not None:
-            _, header, self._mounts.frames, source = reading
             if header is not None:
                 self._track.add(header[1], pose, now)
             anew = self._track.follow(pose, now, source, header[1] if header else 0.0)
-            with self._seeing if anew else nullcontext():
-                self.brake.move(pose, anew)
+        with self._seeing if anew or pose is None else nullcontext():
+            self.brake.move(pose, anew)
 
     def motion(self, message):
         """Return the :class:`Motion` in the bytes of an odometry message, None if unreadable."""

@@ -108,7 +108,7 @@ class BagSet:
         self.problems = []
         left_out = {}
         for path in paths:
-            self._add_bag(path, left_out)
+            self._add_bag(path, left_out, folds)
         if left_out:
             self.problems.append(_left_out(left_out))
         if not self._paths:
@@ -131,7 +131,7 @@ class BagSet:
         time_ns = np.array(min(max(event.ros, 0.0), 4e9) * _NS).astype(np.int64)
         return replace(event, ros=int(self._fold(time_ns)) / _NS)
 
-    def _add_bag(self, path, left_out):
+    def _add_bag(self, path, left_out, folds):
         """Add a bag, without its index."""
         try:
             opened = _opened(path)
@@ -142,7 +142,7 @@ class BagSet:
                 left_out.update(opened.left_out)
                 if not bag._chunks:
                     return
-                self._spans.append(_spans(bag))
+                self._spans.append(_spans(bag, folds))
                 self._kinds.append({number: _connection(found)
                                     for number, found in bag._connections.items()})
         except DAMAGED as error:
@@ -274,11 +274,11 @@ class BagSet:
             self._open.popitem()[1][0].close()
 
 
-def _spans(bag):
+def _spans(bag, folds):
     """Return the :data:`Span` rows of an open bag."""
     spans = [(chunk.start_time.to_nsec(), chunk.end_time.to_nsec(),
               sum(chunk.connection_counts.values())) for chunk in bag._chunks]
-    if all(end - begin <= GAP_NS for begin, end, _ in spans):
+    if not folds or all(end - begin <= GAP_NS for begin, end, _ in spans):
         return spans
     # There may be a gap within a chunk.
     entries = index_of(bag).values()
@@ -472,10 +472,19 @@ def open_session(path, foreign):
             path, error.strerror if isinstance(error, OSError) else error))
 
 
-def _open_folder(path, foreign):
+def bags_in(path):
+    """Return the :class:`BagSet` of a folder, folded (blocking).
+
+    :raises NotASession: no bag in it can be read
+    :raises OSError: it is no folder
+    """
     names = sorted(os.listdir(path))
     bags = bags_of(names) or [name for name in names if name.endswith('.bag')]
-    opened = BagSet([os.path.join(path, name) for name in bags], folds=True)
+    return BagSet([os.path.join(path, name) for name in bags], folds=True)
+
+
+def _open_folder(path, foreign):
+    opened = bags_in(path)
     name = os.path.basename(path)
     info = os.path.join(path, SESSION_YAML)
     if not os.path.exists(info):

@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """The screen of a replay: the recorded session with a timeline; it cannot drive."""
+from contextlib import closing
 import os
 
 from python_qt_binding.QtWidgets import QApplication, QWidget
@@ -11,6 +12,7 @@ from mhri.base.view_rows import CAMERAS
 from mhri.events.events import ALARM, ATTENTION, CALM, Event
 from mhri.events.presenters.event_presenter import EventPresenter
 from mhri.recording.folder import ERROR, EVENTS_JSONL, INFO, NotASession, read_events, WARNING
+from mhri.recording.ros.bag_set import bags_in
 from mhri.replay.ros.replay_backend import ReplayBackend
 from mhri.replay.ros.replay_session import ReplaySession
 from mhri.replay.ros.replay_tasks import ReplayTasks
@@ -28,12 +30,19 @@ _SEVERITIES = {INFO: CALM, WARNING: ATTENTION, ERROR: ALARM}
 def read_lines(path):
     """Return the events of a session's folder; none if the path is not a session (blocking).
 
-    :raises NotASession: the events cannot be read; the text has the reason
+    Their times are those of the player (:meth:`BagSet.folded`).
+
+    :raises NotASession: the events or the bags cannot be read; the text has the reason
     """
+    path = os.path.expanduser(path)
     try:
-        return read_events(text_in(os.path.join(os.path.expanduser(path), EVENTS_JSONL)))
-    except OSError as error:
-        raise NotASession('{}: {}'.format(path, error.strerror))
+        lines = read_events(text_in(os.path.join(path, EVENTS_JSONL)))
+        if lines:
+            with closing(bags_in(path)) as bags:
+                lines = list(map(bags.folded, lines))
+        return lines
+    except (OSError, NotASession) as error:
+        raise NotASession('{}: {}'.format(path, getattr(error, 'strerror', error)))
 
 
 class ReplayEvents(EventPresenter):

@@ -129,14 +129,15 @@ class CloudFeed(CameraFeed):
         depths = [topic for topic in self._depths if published.get(info_topic(topic)) == _INFO_TYPE]
         return offers + find_offers(DEPTH, depths, published)
 
-    def line_of(self, session, offer):
+    def line_of(self, session, offer, receive):
         """Return (class, arguments) of the subscription of an offer and its lens."""
-        return self._with_lens(_Depths, session, offer, super().line_of(session, offer))
+        return self._with_lens(_Depths, session, offer,
+                               super().line_of(session, offer, receive))
 
-    def samples_of(self, session, offer, grant, native_hz):
+    def samples_of(self, session, offer, receive, grant, native_hz):
         """Return the same for single pictures."""
-        return self._with_lens(_DepthSamples, session, offer,
-                               super().samples_of(session, offer, grant, native_hz))
+        return self._with_lens(_DepthSamples, session, offer, super().samples_of(
+            session, offer, receive, grant, native_hz))
 
     def _with_lens(self, line_class, session, offer, line):
         if offer.transport == 'cloud':
