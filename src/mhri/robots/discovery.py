@@ -34,11 +34,18 @@ class IgnoreList:
     """Names that are never robots: shell patterns (``*``, ``?``) for nodes and namespaces.
 
     ``tools`` are nodes' own names, in any namespace: a terminal's ``ROS_NAMESPACE`` may be any.
+    ``bridges`` are nodes outside of any namespace that are never a robot by themselves, but may
+    connect some that are no ROS nodes.
     """
 
     nodes: Tuple[str, ...] = ()
     namespaces: Tuple[str, ...] = ()
     tools: Tuple[str, ...] = ()
+    bridges: Tuple[str, ...] = ()
+
+    def is_bridge(self, node: str) -> bool:
+        """Return whether a node (with leading slash) connects what are no ROS nodes."""
+        return any(fnmatchcase(node, pattern) for pattern in self.bridges)
 
     def is_tool(self, node: str) -> bool:
         """Return whether a node is a tool, such as rviz, and not part of a robot."""
@@ -47,7 +54,7 @@ class IgnoreList:
 
     def covers(self, node: str, namespace: str) -> bool:
         """Return whether a node (with leading slash) or its namespace (without) is ignored."""
-        return (any(fnmatchcase(node, pattern) for pattern in self.nodes)
+        return (any(fnmatchcase(node, pattern) for pattern in self.nodes + self.bridges)
                 or any(fnmatchcase(namespace, pattern) for pattern in self.namespaces))
 
 
@@ -75,7 +82,8 @@ def parse_ignore_list(text: str, origin: str) -> IgnoreList:
     :raises ConfigError: names the file and the wrong key
     """
     section = parse_yaml(text, origin)
-    ignore = IgnoreList(*(section.texts(key, ()) for key in ('nodes', 'namespaces', 'tools')))
+    ignore = IgnoreList(*(section.texts(key, ()) for key in (
+        'nodes', 'namespaces', 'tools', 'bridges')))
     section.close()
     return ignore
 
@@ -123,7 +131,8 @@ def find_candidates(system_state: SystemState, parameters: Parameters, ignore: I
     """Return the robots of a graph, sorted by name.
 
     A namespace is a robot if it has a ``robot_type``, or nodes under it that are neither ignored
-    nor under a known robot, or velocity topics that a node outside of it reads (a simulator). The
+    nor under a known robot, or velocity topics that a node outside of it reads (a simulator); of a
+    bridge, only those that it alone reads, in a namespace where it publishes anything else. The
     root is a robot, named :func:`root_name`, if it has a ``robot_type`` or velocity topics;
     namespaces without either then count as its parts. A node with several robots (``instance`` of
     a type) yields each of them. A namespace without a type whose velocity only reaches the base of
@@ -186,6 +195,7 @@ class Survey:
         #: {place of one robot of a node with several, e.g. ``/turtle2``: (RobotType, its nodes)}
         self.instances = dict(self._find_instances())
         self._readers = dict(self._velocities(self._subscribers))
+        self._bridged = dict(self._find_bridged())
         self._written: Dict[str, List[str]] = {}
         for topic, nodes in self._velocities(self._publishers):
             for node in nodes:
@@ -256,7 +266,7 @@ class Survey:
             if self._topic_types.get(topic) != TWIST or self._ignored(topic) \
                     or self._is_nested(topic) or topic.startswith(of_siblings):
                 continue
-            nodes = list(filter(self._may_be_robot, nodes))
+            nodes = list(filter(self._may_be_robot, nodes)) or self._bridged.get(topic, [])
             owner, name = self._owner(topic, nodes) if nodes else (None, '')
             if owner is not None:
                 self._commands.setdefault(owner, []).append(name)
@@ -284,6 +294,22 @@ class Survey:
         for topic, nodes in group.items():
             if self._topic_types.get(topic) == TWIST and not self._ignored(topic):
                 yield topic, list(filter(self._may_be_robot, nodes))
+
+    def _find_bridged(self) -> Iterator[Tuple[str, List[str]]]:
+        """Yield (velocity topic, the bridges that alone read it and publish a robot's data).
+
+        At the root a bridge publishes for everybody: only what a robot measures counts there.
+        """
+        published: Dict[str, Set[str]] = {}
+        for topic, nodes in self._publishers.items():
+            kind, namespace = self._topic_types.get(topic, ''), split(topic)[0]
+            if kind != TWIST and (namespace != ROOT or is_measured(kind)):
+                for node in filter(self._ignore.is_bridge, nodes):
+                    published.setdefault(node, set()).add(namespace)
+        for topic, nodes in self._subscribers.items():
+            bridges = [node for node in nodes if split(topic)[0] in published.get(node, ())]
+            if bridges and not any(map(self._may_be_robot, nodes)):
+                yield topic, bridges
 
     def _reach(self, namespace: str) -> Tuple[Set[str], Set[str], Set[str]]:
         """Return where the velocity of a namespace goes: (all nodes, the last ones, topics).
@@ -317,7 +343,7 @@ class Survey:
                 measuring.setdefault(split(topic)[0], set()).update(nodes)
         for name, (visited, ends, _) in reach.items():
             inside = {node for node in ends if split(node)[0] == name}
-            self._bases[name] = inside | (
+            self._bases[name] = inside | set(filter(self._ignore.is_bridge, ends)) | (
                 visited & measuring.get(name, set()) if name != ROOT else set())
         inputs = {}
         for name, (_, ends, _) in reach.items():
@@ -387,8 +413,9 @@ class Survey:
             topics += ['/' + topic for topic in getattr(kind, key)]
         nodes = {node for topic in topics for group in (self._subscribers, self._publishers)
                  for node in group.get(topic, ())}
+        nodes &= self._root_nodes | self._listeners.get(ROOT, set())
         return Candidate(name, robot_type if isinstance(robot_type, str) else None,
-                         tuple(sorted(nodes & self._root_nodes)), name_problem(name), seen)
+                         tuple(sorted(nodes)), name_problem(name), seen)
 
     def _seen(self, namespace: str, prefix: str) -> Seen:
         """Return the :class:`Seen` of a robot, whose topics begin with a prefix."""

@@ -216,6 +216,31 @@ GRAPHS = {
         ('/rostopic_123_4 reads /cmd_vel', '/record_99 reads /cmd_vel', '/mux reads /cmd_vel',
          '/mhri_panel reads /robot_controller/twist', '/rqt_gui_py_node_7 reads /cmd_vel',
          '/watcher reads /robot_controller/twist', '/rosbridge_websocket reads /cmd_vel'), {}, []),
+    'behind_a_bridge': (
+        ('/rosbridge_websocket reads /b/cmd_vel', '/rosbridge_websocket writes /b/pose x/Pose'), {},
+        [('b', None, Seen(False, None, 'cmd_vel'))]),
+    'several_behind_one_bridge': (
+        ('/rosbridge_websocket reads /a/drive', '/rosbridge_websocket writes /a/state x/State',
+         '/rosbridge_websocket reads /b/cmd_vel',
+         '/rosbridge_websocket writes /b/odom nav_msgs/Odometry'), {'a': {'robot_type': 'generic'}},
+        [('a', 'generic', Seen(False, None, 'drive')), ('b', None, Seen(False, None, 'cmd_vel'))]),
+    'behind_a_bridge_without_a_namespace': (
+        ('/rosbridge_websocket reads /cmd_vel',
+         '/rosbridge_websocket writes /odom nav_msgs/Odometry'), {},
+        [('robot', None, Seen(True, None, 'cmd_vel'))]),
+    'a_bridge_of_a_page_that_shows_and_drives': (
+        ('/rosbridge_websocket reads /b/cmd_vel', '/rosbridge_websocket writes /b/cmd_vel',
+         '/rosbridge_websocket reads /cmd_vel', '/rosbridge_websocket writes /goal x/Goal'),
+        {}, []),
+    'a_bridge_of_a_page_beside_the_robot': (
+        ('/rosbridge_websocket reads /b/cmd_vel', '/rosbridge_websocket writes /b/web/cmd_vel',
+         '/rosbridge_websocket writes /b/goal x/Goal', '/b/base reads /b/cmd_vel'), {},
+        [('b', None, Seen(False, None, 'cmd_vel'))]),
+    'tools_that_listen_and_publish': (
+        ('/play_3 reads /b/cmd_vel', '/play_3 writes /b/odom nav_msgs/Odometry',
+         '/mux reads /b/cmd_vel', '/mux writes /b/mhri_guard/command geometry_msgs/TwistStamped',
+         '/mhri_replay writes /b/odom nav_msgs/Odometry', '/mhri_session reads /b/cmd_vel'), {},
+        []),
     'with_its_guard': (
         TB3 + ('/robot/mhri_guard reads /robot/mhri_guard/command geometry_msgs/TwistStamped',
                '/robot/mhri_guard writes /cmd_vel'), {},
