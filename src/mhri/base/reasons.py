@@ -37,6 +37,7 @@ NOT_SIDEWAYS, TOGETHER, NO_ANSWER = 'not_sideways', 'together', 'no_answer'
 NO_LISTENER = 'no_listener'
 # Reasons for attention while the robot can move.
 NOT_ALONE, ODOMETRY_STUCK = 'not_alone', 'odometry_stuck'
+ODOMETRY_FOUND = 'odometry_found'
 
 # {code: (the state, its consequence or its remedy)}; {} are names.
 _WORDS: Dict[str, Tuple[str, str]] = {
@@ -93,12 +94,14 @@ _WORDS: Dict[str, Tuple[str, str]] = {
     NO_ANSWER: ('commands reach it, its motors do not answer', ''),
     NOT_ALONE: ('not alone', '{}'),
     ODOMETRY_STUCK: ('odometry stuck', 'it does not follow commands'),
+    ODOMETRY_FOUND: ('odometry not proven', '{} is not of its type: drive it, a stop is confirmed '
+                     'once that follows'),
     LIMIT_RAISED: ('limit raised', 'deselect and select it to use its new speed limit'),
 }
 # Why motors have or may have no power: {``power`` of mhri/RobotDrive: text of POWER}.
 _POWER = {'cut': 'cut', 'cut_sent': 'cut, not confirmed', 'cut_asked': 'being cut',
           'restore_asked': 'being restored', 'failed': 'not changed'}
-NO_WITNESS = 'its odometry does not follow commands'
+NO_WITNESS = 'its odometry has not followed its commands'
 _MAX_NAMES = 3
 
 

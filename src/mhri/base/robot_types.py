@@ -25,6 +25,13 @@ _TOPIC = re.compile(r'/?[A-Za-z][A-Za-z0-9_]*(/[A-Za-z0-9_]+)*\Z')
 _MAX_LETTERS = 250
 #: Ahead of the robot's centre, to the left [m], turned to the left [rad].
 LaserPlace = Tuple[float, float, float]
+#: {key of a sensor other than odometry: type of its messages}
+SENSOR_TYPES = {
+    'imu': 'sensor_msgs/Imu', 'rgb': 'sensor_msgs/Image', 'depth': 'sensor_msgs/Image',
+    'cloud': 'sensor_msgs/PointCloud2', 'scan': 'sensor_msgs/LaserScan',
+    'battery': 'sensor_msgs/BatteryState'}
+#: those of them that may be sensor_msgs/CompressedImage below their topic
+PICTURE_KEYS = ('rgb', 'depth')
 # The keys of a template that list topics.
 TOPIC_KEYS = ('command', 'imu', 'odometry', 'rgb', 'depth', 'cloud', 'scan', 'battery')
 
@@ -118,7 +125,9 @@ class RobotType:
     ``instance`` is the first segment of all its topics if one node may have several such robots,
     each with its own first segment. ``behind`` are the topics of ``command`` behind the robot's own
     multiplexer: zeros may go there, commands may not. ``guard_behind``: whether the guard's output
-    goes there. ``accessories`` are its tools and its other sensors.
+    goes there. ``accessories`` are its tools and its other sensors. ``found`` are the keys whose
+    last topic is not of the type: it was found by its message type
+    (:class:`mhri.robots.found_streams.FoundStreams`).
     """
 
     name: str
@@ -151,6 +160,12 @@ class RobotType:
     behind: Tuple[str, ...] = ()
     guard_behind: bool = False
     accessories: Tuple[Accessory, ...] = ()
+    found: Tuple[str, ...] = ()
+
+    @property
+    def sensor_types(self) -> Dict[str, str]:
+        """{key of each sensor: type of its messages}."""
+        return dict(SENSOR_TYPES, odometry=self.odometry_type)
 
     @property
     def is_behind(self) -> bool:
@@ -161,8 +176,10 @@ class RobotType:
         """Return the pose of the laser of ``scan[number]`` by its type, None if unknown.
 
         With several lasers, none is assumed to face forward: with one that faces backward the robot
-        would drive into obstacles it sees.
+        would drive into obstacles it sees. Nor is one that was found.
         """
+        if 'scan' in self.found and number == len(self.scan) - 1:
+            return None
         if self.lasers:
             return self.lasers[number]
         return (self.laser_x_m, 0.0, 0.0) if len(self.scan) == 1 else None

@@ -8,7 +8,7 @@ from typing import Any, Dict, Iterable, List, Mapping, Set, Tuple
 
 from mhri.base.config import ConfigError
 from mhri.base.names import topic_of
-from mhri.base.robot_types import resolve_robot_type, RobotType
+from mhri.base.robot_types import resolve_robot_type, RobotType, SENSOR_TYPES
 from mhri.base.text import listed
 from mhri.doctor.accessories import find_on_accessories
 from mhri.doctor.facts import ANSWERS, Facts, FAULT, Finding, FINE, Graph, LISTENED_S, WARNING
@@ -17,12 +17,10 @@ from mhri.doctor.sensors import find_on_cameras, find_on_lasers, find_same_frame
 from mhri.doctor.system import muxes
 from mhri.robots.discovery import (
     Candidate, find_candidates, IgnoreList, NAME_PARAMETER, parameters_of, ROOT_PARAMETERS)
+from mhri.robots.found_streams import choice_words, found_words, FoundStreams, own_topics
 from mhri.robots.stamp_age import delay_of
 
 TWIST = 'geometry_msgs/Twist'
-_TYPES = (('imu', 'sensor_msgs/Imu'), ('rgb', 'sensor_msgs/Image'),
-          ('depth', 'sensor_msgs/Image'), ('scan', 'sensor_msgs/LaserScan'),
-          ('battery', 'sensor_msgs/BatteryState'))
 # Nodes that may publish a robot's velocity: mux, its own guard, a doctor testing its watchdog.
 MUX, TRIAL, GUARD, LINK = '/mux', '/mhri_doctor', 'mhri_guard', 'mhri_link'
 OFFSET_WARN_S, OFFSET_FAULT_S = 0.1, 0.5
@@ -30,12 +28,16 @@ OFFSET_WARN_S, OFFSET_FAULT_S = 0.1, 0.5
 
 @dataclass(frozen=True)
 class Robot:
-    """A candidate from the graph with its parameters and its template."""
+    """A candidate from the graph with its parameters and its template.
+
+    ``choices`` are :attr:`FoundStreams.choices`.
+    """
 
     candidate: Candidate
     template: RobotType
     parameters: Dict[str, Any] = field(default_factory=dict)
     errors: Tuple[ConfigError, ...] = ()
+    choices: Mapping[str, List[str]] = field(default_factory=dict)
 
     def topics(self, *keys: str) -> List[str]:
         """Return the absolute names of the topics under some keys of its template, in order."""
@@ -62,11 +64,18 @@ def robots_of(graph: Graph, types: Mapping[str, RobotType], ignore: IgnoreList) 
     :param ignore: :class:`mhri.robots.discovery.IgnoreList`
     """
     robots = []
-    for candidate in find_candidates(graph.state(), graph.parameters, ignore,
-                                     topic_types=graph.types.items(), types=types):
-        parameters = parameters_of(candidate.name, graph.parameters, candidate.seen.at_root)
-        template, errors = resolve_robot_type(types, candidate.name, parameters, candidate.seen)
-        robots.append(Robot(candidate, template, parameters, tuple(errors)))
+    candidates = find_candidates(graph.state(), graph.parameters, ignore,
+                                 topic_types=graph.types.items(), types=types)
+    published = {topic: graph.types.get(topic, '') for topic in graph.publishers}
+    spaces = {one.name.partition('/')[0] for one in candidates if not one.seen.at_root}
+    for candidate in candidates:
+        name, at_root = candidate.name, candidate.seen.at_root
+        parameters = parameters_of(name, graph.parameters, at_root)
+        template, errors = resolve_robot_type(types, name, parameters, candidate.seen)
+        found, overrides = FoundStreams(), parameters.get('mhri')
+        own = own_topics(name, published, spaces if at_root else None)
+        template = found.update(template, own, overrides if isinstance(overrides, dict) else ())
+        robots.append(Robot(candidate, template, parameters, tuple(errors), found.choices))
     return robots
 
 
@@ -128,8 +137,9 @@ def _robot(facts: Facts, types: Mapping[str, RobotType], robot: Robot) -> List[F
     found = _type(robot, types)
     if not any(facts.answering(node) for node in nodes):
         return found
-    found += (_velocity(facts, robot) + _topics(facts, robot) + _odometry(facts, robot)
-              + _clock(facts, robot) + find_on_lasers(facts, name, robot.topics('scan'))
+    found += (_velocity(facts, robot) + _topics(facts, robot) + _found(robot)
+              + _odometry(facts, robot) + _clock(facts, robot)
+              + find_on_lasers(facts, name, robot.topics('scan'))
               + find_on_cameras(facts, name, robot.topics('rgb', 'depth'))
               + find_on_accessories(facts, name, robot.template.accessories))
     if all(item.severity == FINE for item in found):
@@ -301,7 +311,7 @@ def hidden_listeners(facts: Facts, topics: Iterable[str]) -> Set[str]:
 def _topics(facts: Facts, robot: Robot) -> List[Finding]:
     """Compare the types of the robot's topics with those of its template."""
     name, template, found = robot.candidate.name, robot.template, []
-    kinds = (('command', TWIST), ('odometry', template.odometry_type)) + _TYPES
+    kinds = [('command', TWIST), ('odometry', template.odometry_type), *SENSOR_TYPES.items()]
     for key, full, kind in [(key, topic, kind) for key, kind in kinds
                             for topic in robot.topics(key)]:
         # The master keeps the types of topics that are no longer used.
@@ -317,13 +327,29 @@ def _topics(facts: Facts, robot: Robot) -> List[Finding]:
     return found
 
 
+def _found(robot: Robot) -> List[Finding]:
+    """Report the sensors that have other names than in the template."""
+    name = robot.candidate.name
+    found = []
+    for key in robot.template.found:
+        what, remedy = found_words(name, key, robot.template)
+        found.append(Finding(FINE, 'sensor_found', name, what, remedy=remedy))
+    for key, topics in robot.choices.items():
+        what, remedy = choice_words(name, key, topics)
+        found.append(Finding(
+            WARNING, 'sensor_names', name, '{}: {}'.format(key, what),
+            'the panel shows no speed, and no stop is confirmed' if key == 'odometry'
+            else 'the panel shows none of them', remedy))
+    return found
+
+
 def _odometry(facts: Facts, robot: Robot) -> List[Finding]:
     """Check that odometry is published, by one node per topic."""
     name, topics = robot.candidate.name, robot.topics('odometry')
     publishers = {topic: facts.graph.publishers.get(topic, ()) for topic in topics}
     mute = 'the panel shows no speed, says "silent", and no stop is confirmed'
     if topics and not any(publishers.values()):
-        return [Finding(
+        return [] if 'odometry' in robot.choices else [Finding(
             WARNING, 'odometry_missing', name, 'nothing publishes {}'.format(' or '.join(topics)),
             mute, '{}   # its real topic, then: rosparam set /{}/mhri/odometry "[<topic>]"; on '
             'the robot: is its base switched on?'.format(robot.list_topics(), name))]

@@ -109,14 +109,16 @@ def link_state(age_s: Optional[float], connections: int, silent_after_s: float =
     return GONE
 
 
-def link_note(state: str, age_s: Optional[float], heard_at: str, waited_s: float) -> str:
+def link_note(state: str, age_s: Optional[float], heard_at: str, waited_s: float,
+              no_odometry: str = '') -> str:
     """Return a note for the operator about a link; '' if all is well.
 
     :param heard_at: local time of the newest message as text, e.g. '14:02:11'
     :param waited_s: how long the robot has been in the list [s]
+    :param no_odometry: what there is in place of its odometry, '' for nothing
     """
     if state == LIVE and age_s is None:
-        return 'sends no odometry: mhri cannot tell whether it moves'
+        return 'sends no odometry: ' + (no_odometry or 'mhri cannot tell whether it moves')
     if state == SILENT and age_s is not None:
         return 'nothing since {}'.format(heard_at) if age_s >= LONG_S \
             else 'nothing for {:.1f} s'.format(age_s)

@@ -18,7 +18,8 @@ _NOT_IN_NOTE = ('', reasons.STOPPED, reasons.HARDWARE_STOP, reasons.POWER_CUT,
 
 
 def robot_view(heard: Mapping[str, Any], driven: Any = None, answers: bool = True,
-               control: Any = None, problem: str = '', **ours: Any) -> RobotView:
+               control: Any = None, problem: str = '', found: str = '',
+               **ours: Any) -> RobotView:
     """Return the :class:`mhri.base.views.RobotView` of a robot.
 
     :param heard: fields from its own messages; ``note`` is a note on its link, ``slow`` whether
@@ -27,6 +28,7 @@ def robot_view(heard: Mapping[str, Any], driven: Any = None, answers: bool = Tru
     :param answers: whether the drive answers; otherwise its state is ignored
     :param control: its ``mhri/LinkControl``, None without one
     :param problem: the problem with its parameters, '' for none
+    :param found: the topic of its odometry if its type does not have it
     :param ours: fields of the screen itself
     """
     fields, live = dict(heard), heard['link'] == LIVE
@@ -37,7 +39,7 @@ def robot_view(heard: Mapping[str, Any], driven: Any = None, answers: bool = Tru
             fields.get('accessories', ()), driven.accessories))
         if driven.stands == reasons.HARDWARE_STOP:
             fields['hardware_stop'] = True
-        warning = _warning(driven, fields.get('proof') is not None)
+        warning = _warning(driven, fields.get('proof') is not None, found)
         if live:
             fields['note'] = (warning.sentence if warning else '') or fields.get('note', '') or \
                 _calm_note(driven, fields['brake'])
@@ -86,7 +88,7 @@ def _goes(robot: Any) -> bool:
     return any((robot.sent.linear.x, robot.sent.linear.y, robot.sent.angular.z))
 
 
-def _warning(robot: Any, proved: bool) -> Optional[Reason]:
+def _warning(robot: Any, proved: bool, found: str) -> Optional[Reason]:
     """Return why a robot stands still, or another warning; None if all is well.
 
     :param proved: whether a proof shows that it is stopped
@@ -98,7 +100,8 @@ def _warning(robot: Any, proved: bool) -> Optional[Reason]:
     if robot.also_commanded_by:
         return Reason(reasons.NOT_ALONE, (also_words(robot.also_commanded_by),))
     if not robot.odometry_follows:
-        return Reason(reasons.ODOMETRY_STUCK)
+        return Reason(reasons.ODOMETRY_FOUND, (found,)) if found \
+            else Reason(reasons.ODOMETRY_STUCK)
     return Reason(reasons.LIMIT_RAISED) if robot.stands == reasons.LIMIT_RAISED else None
 
 

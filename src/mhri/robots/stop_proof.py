@@ -68,10 +68,12 @@ class OdometryWitness:
     a commanded robot whose wheels are held cannot be distinguished from one whose odometry hangs.
 
     Times are seconds of a clock that never goes back.
+
+    :param follows: false if that has to be seen first: it was found by its message type alone
     """
 
-    def __init__(self) -> None:
-        self.follows = True
+    def __init__(self, follows: bool = True) -> None:
+        self.follows = follows
         self._pose = PoseWatch()
         # Since when it is commanded, and only to turn; until when it was, and when it last moved.
         self._since: Optional[float] = None

@@ -6,7 +6,7 @@ from typing import Any, Dict, Iterable, List, Mapping, Optional, Tuple
 
 from mhri.base.names import name_problem, topic_of
 from mhri.base.numbers import natural_key
-from mhri.base.robot_types import RobotType
+from mhri.base.robot_types import PICTURE_KEYS, RobotType
 from mhri.base.text import listed
 from mhri.recording.folder import NotASession
 
@@ -18,12 +18,7 @@ VELOCITY_TYPES = frozenset((
 _INPUTS = ('/mux_in/', '/panel_in/', '/panel/', '/mhri_session/', '/mhri_replay/', '/clock',
            '/rosout')
 _REQUESTS = ('/goal', '/cancel')
-# Allowed types by kind of topic.
-_SENSOR_TYPES = {
-    'imu': ('sensor_msgs/Imu',), 'scan': ('sensor_msgs/LaserScan',),
-    'rgb': ('sensor_msgs/Image', 'sensor_msgs/CompressedImage'),
-    'depth': ('sensor_msgs/Image', 'sensor_msgs/CompressedImage'),
-    'cloud': ('sensor_msgs/PointCloud2',), 'battery': ('sensor_msgs/BatteryState',)}
+_COMPRESSED = ('sensor_msgs/CompressedImage',)
 _UNFIT = re.compile(r'[^A-Za-z0-9_]+')
 
 
@@ -86,9 +81,8 @@ def _kind(name: str, topics: Mapping[str, str],
 
 def _matches(name: str, topics: Mapping[str, str], kind: RobotType) -> int:
     """Return how many sensor kinds of a robot type are present."""
-    found = int(_has(name, topics, kind.odometry, (kind.odometry_type,)))
-    return found + sum(_has(name, topics, getattr(kind, key), of)
-                       for key, of in _SENSOR_TYPES.items())
+    return sum(_has(name, topics, getattr(kind, key), (of,) + _COMPRESSED * (key in PICTURE_KEYS))
+               for key, of in kind.sensor_types.items())
 
 
 def _has(name: str, topics: Mapping[str, str], candidates: Iterable[str],

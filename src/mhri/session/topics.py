@@ -92,6 +92,12 @@ def robot_entry(robot: str, number: int, kind: RobotType, parameters: Mapping[st
                 break
         else:
             topics.update({key: name + suffix for name in names[:1]})
+    # What was found on the graph is not found again in a replay.
+    found = {key: list(getattr(kind, key)) for key in kind.found}
+    if found:
+        overrides = parameters.get('mhri')
+        parameters = {**parameters, 'mhri': {
+            **(overrides if isinstance(overrides, Mapping) else {}), **found}}
     return {'number': number, 'type': kind.name, 'model': kind.model,
             'silent_after_s': kind.silent_after_s, 'parameters': _plain(parameters),
             'topics': topics}

@@ -117,6 +117,19 @@ class CameraFeedTest(CameraCase):
         wait_for(lambda: 'nobody publishes' in feed.status().detail, 10.0, 'no picture, no offer')
         text.unregister()
 
+    def test_cameras_of_other_names_are_named(self):
+        others = ['/named/{}/image_raw'.format(side) for side in ('front', 'rear')]
+        for topic in others:
+            self.begin(Camera(topic, raw('rgb8', RGB)))
+        feed = self.feed('named')
+        wait_for(lambda: 'rosparam set /named/mhri/rgb "[front/image_raw]"' in feed.status().detail,
+                 10.0, 'the line that uses one')
+
+    def test_a_robot_without_a_namespace(self):
+        self.begin(Camera('/front/image_raw', raw('rgb8', RGB)))
+        feed = self.feed('robot', topics=('/camera/image_raw', '/front/image_raw'))
+        wait_for(feed.take, 10.0, 'its picture')
+
     def test_late_killed_and_replaced(self):
         feed = self.feed('late')
         wait_for(lambda: feed.status().problem, 10.0, 'the first look')

@@ -192,10 +192,74 @@ class RobotTypesTest(unittest.TestCase):
 
     def test_a_robot_without_odometry_is_not_said_to_be_waited_for(self):
         """It is driven."""
-        self.start('cmd_vel', 'elsewhere', namespace='/mute')
+        self.start('cmd_vel', '/elsewhere', namespace='/mute')
         self.add('mute', self.found('mute')['mute'])
         wait_for(lambda: self.view('mute').link == 'live', TIMEOUT_S, 'mute to be reached')
         self.assertIn('no odometry', self.view('mute').note)
+
+    def test_odometry_of_another_name_counts_once_it_has_followed(self):
+        self.start('cmd_vel', 'odometry/filtered', namespace='/other')
+        kind = self.add('other', self.found('other')['other'])
+        self.assertEqual((kind.odometry, kind.found), (('odom', 'odometry/filtered'),
+                                                       ('odometry',)))
+        wait_for(lambda: self.view('other').link == 'live' and not self.view(
+            'other').odometry_follows, TIMEOUT_S, 'its odometry, which is not proven')
+        self.assertIn('odometry/filtered', self.view('other').note)
+
+        def follows():
+            self.take_stick('other')
+            return wait_for(lambda: self.view('other').odometry_follows, HELD_S, 'it to follow')
+        insist(follows, 'the odometry to follow the stick')
+        self.operator.check()
+        wait_for(lambda: self.view('other').note == '', TIMEOUT_S, 'nothing to be wrong with it')
+
+    def test_odometry_of_another_name_at_the_root(self):
+        """That of a robot with a namespace is not its own."""
+        self.start('cmd_vel', 'odometry/filtered')
+        self.start('cmd_vel', 'odom', namespace='/beside')
+        facts = self.found('beside', 'robot')
+        kind = self.add('robot', facts['robot'])
+        self.assertEqual(kind.odometry, ('/odom', '/odometry/filtered'))
+        wait_for(lambda: self.drive.robot('robot') and self.view('robot').link == 'live'
+                 and not self.view('robot').odometry_follows, TIMEOUT_S, 'the drive to find it')
+
+    def test_odometry_of_another_name_that_comes_later(self):
+        """The only one is used, and the one that its type names, once that comes."""
+        self.start('cmd_vel', '/elsewhere', namespace='/late')
+        kind = self.add('late', self.found('late')['late'])
+        self.assertEqual(kind.odometry, ('odom',))
+        ekf = self.start('/unused', 'odometry/filtered', node='ekf', namespace='/late')
+
+        def has(*odometry):
+            self.monitors.supervise()
+            return self.monitors.robot_type('late').odometry == odometry
+        wait_for(lambda: has('odom', 'odometry/filtered'), TIMEOUT_S, 'the other odometry', 0.1)
+        self.start('/unused', 'odom', node='wheels', namespace='/late')
+        wait_for(lambda: has('odom'), TIMEOUT_S, 'its own odometry', 0.1)
+        self.gone(ekf, '/late/ekf')
+        self.assertTrue(has('odom'))
+
+    def test_two_odometries_of_other_names_are_named(self):
+        self.start('cmd_vel', 'odometry/filtered', namespace='/two')
+        self.start('/unused', 'visual/odom', node='visual', namespace='/two')
+        kind = self.add('two', self.found('two')['two'])
+        self.assertEqual((kind.odometry, kind.found), (('odom',), ()))
+        line = 'rosparam set /two/mhri/odometry "[odometry/filtered]"'
+        wait_for(lambda: line in self.view('two').note, TIMEOUT_S, 'the line that uses one')
+        rospy.set_param('/two/mhri/odometry', ['odometry/filtered'])
+        self.addCleanup(rospy.delete_param, '/two/mhri')
+
+        def used():
+            self.monitors.supervise()
+            return self.monitors.robot_type('two').odometry == ('odometry/filtered',)
+        wait_for(used, TIMEOUT_S, 'that line to be followed', 0.1)
+        self.drives('two', 0.5)
+
+    def test_a_robot_behind_a_bridge(self):
+        """One node outside of all namespaces is several robots."""
+        self.start('/behind/cmd_vel', '/behind/odom', node='rosbridge_websocket')
+        self.add('behind', self.found('behind')['behind'])
+        self.drives('behind', 0.5)
 
     def test_an_unknown_robot_is_driven_by_the_topic_it_has(self):
         self.start('drive/velocity', 'odom', namespace='/crawler')

@@ -8,7 +8,8 @@ import threading
 import pytest
 
 from support.linked import LONG_S, running_linked
-from support.ros_system import wait_for
+from support.paths import PLAIN_ROBOT
+from support.ros_system import free_port, wait_for
 
 # Counts on another master how often the mux ends on purpose.
 ENDINGS = '''
@@ -149,6 +150,26 @@ def test_a_raw_picture_comes_where_the_compressed_one_is_only_advertised(lab):
         finally:
             feed.close(LONG_S)
             camera.kill()
+
+
+def test_sensors_of_other_names_come_over_the_link(lab):
+    """The host finds them in its turn."""
+    from mhri.graph.ros.resources import robot_types
+    from mhri.robots.ros.registry import RobotRegistry
+    endpoint = 'tcp/127.0.0.1:{}'.format(free_port())
+    names = ['--name', 'bot2', '--keys', 'off', '__ns:=/bot2']
+    robot = [lab.robot.start(sys.executable, PLAIN_ROBOT, 'cmd_vel', 'odometry/filtered',
+                             '__ns:=/bot2'),
+             lab.robot.node('mhri_link', '--side', 'robot', '--listen', endpoint, *names)]
+    host = lab.host.node('mhri_link', '--side', 'host', '--connect', endpoint, '--host',
+                         'host:lab', *names)
+    registry = RobotRegistry(robot_types()[0])
+    try:
+        wait_for(lambda: registry.look(['bot2'])['bot2'].odometry == ('odom', 'odometry/filtered'),
+                 LONG_S, 'its odometry on the host', 0.1)
+    finally:
+        for process in [host] + robot:
+            process.terminate()
 
 
 def test_the_link_says_how_good_it_is(lab):

@@ -314,6 +314,21 @@ def test_nobody_listens_and_nobody_tells():
     assert [item.check for item in world.wrong()] == ['odometry_missing']
 
 
+def test_sensors_of_other_names():
+    """The only one is used; of several, the line that uses one is the remedy."""
+    world = World()
+    world.publish['/bot1/wheels'] = world.publish.pop('/bot1/odom')
+    world.kinds['/bot1/wheels'] = ODOMETRY
+    assert world.wrong() == []
+    found, = [item for item in diagnose(world.facts(), TYPES, IGNORE)
+              if item.check == 'sensor_found']
+    assert found.remedy == 'rosparam set /bot1/mhri/odometry "[wheels]"'
+    world.publish['/bot1/filtered'], world.kinds['/bot1/filtered'] = ['/bot1/base'], ODOMETRY
+    finding, = world.wrong()
+    assert (finding.check, finding.remedy) == (
+        'sensor_names', 'rosparam set /bot1/mhri/odometry "[filtered]"')
+
+
 def test_publishers_disagree():
     world = World()
     add('/two', ['/bot1/odom'])(world)

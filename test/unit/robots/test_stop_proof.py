@@ -332,9 +332,9 @@ DRIVES = {
     'pushed_by_hand_is_not_following': ([(GO, REST, 0.1, 4.0), (HOLD, MOVES, 0.1, 1.0)], False)}
 
 
-def driven(parts, moves=lambda motion, now: motion):
+def driven(parts, moves=lambda motion, now: motion, follows=True):
     """Return a witness after a drive."""
-    witness, now = OdometryWitness(), 0.0
+    witness, now = OdometryWitness(follows), 0.0
     for told, motion, every_s, lasts_s in parts:
         for _ in range(int(round(lasts_s / every_s))):
             witness.on_command(told, now)
@@ -347,6 +347,15 @@ def driven(parts, moves=lambda motion, now: motion):
 def test_whether_odometry_follows_what_the_robot_is_told(name):
     parts, follows = DRIVES[name]
     assert driven(parts).follows == follows
+
+
+@pytest.mark.parametrize('name', sorted(DRIVES))
+def test_odometry_that_was_found_follows_once_it_was_seen_to(name):
+    """Neither standstill nor motion without a command shows that."""
+    parts, follows = DRIVES[name]
+    moved = any(told not in (HOLD, CREEP) and motion in (MOVES, SLIDES, SPINS)
+                for told, motion, *_ in parts)
+    assert driven(parts, follows=False).follows == (follows and moved)
 
 
 def test_a_pose_that_moves_follows_whatever_the_speed_beside_it_says():

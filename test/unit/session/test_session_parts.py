@@ -92,8 +92,17 @@ def test_the_entry_of_a_robot_names_what_is_published():
         'rgb': '/bot1/camera/image_raw/compressed', 'command': '/bot1/cmd_vel'}
     raw = {'/bot1/camera/image_raw', '/bot1/battery'}
     assert robot_entry('bot1', 3, KIND, {}, raw)['topics']['rgb'] == entry['topics']['rgb']
+
     assert (entry['number'], entry['type'], entry['model']) == (3, 'x', None)
     assert entry['parameters'] == {'a': {'b': [1, "b'x'"]}}
+
+
+def test_found_topics_are_kept_for_the_replay():
+    """There, only what the parameters say is known of a robot."""
+    kind = replace(KIND, odometry=KIND.odometry + ('odometry/filtered',), found=('odometry',))
+    entry = robot_entry('bot1', 3, kind, {'mhri': {'radius_m': 0.4}}, {'/bot1/odometry/filtered'})
+    assert entry['topics']['odometry'] == '/bot1/odometry/filtered'
+    assert entry['parameters']['mhri'] == {'radius_m': 0.4, 'odometry': list(kind.odometry)}
 
 
 @pytest.mark.parametrize('kind', sorted(KINDS))

@@ -13,6 +13,7 @@ import rospy
 
 from mhri.base.names import topic_of
 from mhri.camera.budget import AS_IT_COMES, Figures
+from mhri.camera.image_message import RAW_TYPE
 from mhri.camera.images import StreamStatus
 from mhri.camera.ros.camera_decoder import Decoder
 from mhri.camera.ros.picture_relay import PICTURE_RELAY
@@ -21,6 +22,7 @@ from mhri.camera.stream_meter import WINDOW_S
 from mhri.camera.transports import AUTO, find_offers, may_carry, RAW, Speakers
 from mhri.graph.ros.master_api import MasterApi, MasterError
 from mhri.graph.ros.subscription import reachable, Subscription
+from mhri.robots.found_streams import choice_words, likely_topics, own_topics
 
 LOOK_S = 1.0           # period of master queries while nothing is received
 LOOK_AGAIN_S = 5.0     # ... and while pictures are: a better transport may appear
@@ -55,6 +57,10 @@ class CameraFeed:
         self.kind = kind
         self.word = _WORDS[kind]
         self._topics = [topic_of(robot, topic) for topic in topics]
+        # A robot without a namespace has its topics anywhere.
+        self._below = '/{}/'.format(robot)
+        if any(not topic.startswith(self._below) for topic in self._topics):
+            self._below = ''
         self._transport = transport
         self._clock = clock
         self._changed = threading.Condition()
@@ -280,7 +286,7 @@ class CameraFeed:
 
         :raises MasterError: the master cannot be reached
         """
-        published = dict(MasterApi(rospy.get_name()).call('getPublishedTopics', '/' + self.robot))
+        published = dict(MasterApi(rospy.get_name()).call('getPublishedTopics', self._below))
         offers = self.find_offers(published)
         with self._changed:
             self._offers = offers if self._session is session else []
@@ -292,7 +298,7 @@ class CameraFeed:
             self._speakers.heard(topic, now)
         offer, silent = self._speakers.choose(offers, transport, now)
         if offer is None:
-            session.explain(*self._why_nothing(transport, offers))
+            session.explain(*self._why_nothing(transport, offers, published))
             if line and not may_carry(self.kind, transport, line.topic):
                 self._hold(None)
         elif grant.sampled:
@@ -316,11 +322,16 @@ class CameraFeed:
         session.explain('no {} has come yet'.format(self.word), 'waiting for ' + offer.topic)
         self._hold(*self.line_of(session, offer, self._relaying(session, offer)))
 
-    def _why_nothing(self, transport, offers):
+    def _why_nothing(self, transport, offers, published):
         """Return why there is nothing to subscribe to, also in terms of ROS."""
         if offers:
             return '{} offers {}, not {}'.format(
                 self.robot, ', '.join(offer.transport for offer in offers), transport), ''
+        others = likely_topics(self.kind, RAW_TYPE, own_topics(self.robot, published)) \
+            if self._below else ()
+        if others:
+            return 'no {} under its name'.format(self.word), ': '.join(
+                choice_words(self.robot, self.kind, others))
         return 'no {}; is its driver running?'.format(self.word), \
             'nobody publishes ' + (' or '.join(self._topics) or 'a picture')
 

@@ -11,6 +11,7 @@ from mhri.base.names import DRIVEN, names_in, ROBOTS
 from mhri.driving.operator_lease import MAX_ROBOTS
 from mhri.graph.ros.announcer import Announcer
 from mhri.graph.ros.master_api import MasterApi, MasterError
+from mhri.robots.found_streams import FoundStreams
 from mhri.robots.ros.registry import RobotRegistry
 from mhri.robots.twins import twins_on_graph
 
@@ -42,7 +43,8 @@ class KnownRobots:
 
     def __init__(self, types, open_line, close_line, unheard, memory, watched, on_publishers,
                  readers, on_twins, nodes):
-        self._registry = RobotRegistry(types)
+        # A new type replaces the line, which stops the robot: not for a camera.
+        self._registry = RobotRegistry(types, lambda: FoundStreams(('odometry', 'scan')))
         self._open_line = open_line
         self._close_line = close_line
         self._announcer = Announcer(unheard)

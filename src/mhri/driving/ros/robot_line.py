@@ -130,9 +130,9 @@ class RobotLine:
         self._streams = RobotStreams(name, robot_type, (HARDWARE_STOP,), clock)
         self._streams.open(HARDWARE_STOP)
         self._navigation = OwnNavigation(name, safely(self._on_abandoned), clock)
-        self._witness, self._compared_at = OdometryWitness(), -math.inf
+        self._witness = OdometryWitness('odometry' not in robot_type.found)
         # The last velocity that the guard has passed on to the robot.
-        self._given = ZERO
+        self._given, self._compared_at = ZERO, -math.inf
         self._zero_at, self._again_at = -math.inf, math.inf
         # {(caller id, topic)} of the nodes registered at the master that can command it.
         self._registered = frozenset()

@@ -29,6 +29,7 @@ from mhri.link.ros.reregister import Reregistration
 from mhri.link.ros.robot_record import RobotRecord
 from mhri.link.ros.side import ABOUT, CONTROL, Side
 from mhri.link.shares import Flow, shares
+from mhri.robots.found_streams import FoundStreams
 from mhri.robots.owners import called
 
 LOOK_S = 1.0
@@ -140,6 +141,7 @@ class RobotSide(Side):
         self._estimator, self._bound = RateEstimator(), False
         self._pictures = Pictures(self.clock, self._up_piece, lambda data, names, number: rewritten(
             data, number, names, self._rename))
+        self._found = FoundStreams()
         self._streams = {}
         self._open = {}
         self._publishers = {
@@ -302,17 +304,21 @@ class RobotSide(Side):
         parameters.update((key, value) for key, value in zip(PARAMETERS, found)
                           if value is not None)
         kind, errors = resolve_robot_type(self._types, self.name, parameters)
+        own, kinds = rospy.get_name(), dict(map(tuple, types))
+        start, overrides = self._namespace + '/', parameters.get('mhri')
+        kind = self._found.update(
+            kind, {topic[len(start):]: kinds.get(topic, '') for topic, nodes in state[0]
+                   if topic.startswith(start) and set(nodes) != {own}},
+            sorted(overrides) if isinstance(overrides, dict) else ())
         for error in errors:
             rospy.logwarn_throttle(60.0, '{}'.format(error))
         streams = {full_topic(self._namespace, stream.topic): stream
                    for stream in up_streams(kind)}
-        own = rospy.get_name()
         # A compressed picture that is only advertised is in nobody's place.
         silent = {topic for topic, carried in list(self._open.items()) if carried.is_silent()}
         there = {streams[topic].topic for topic, nodes in state[0]
                  if topic in streams and any(node != own for node in nodes)} - silent
         topics = dict(self._about.topics)
-        kinds = dict(map(tuple, types))
         for stream in worth_carrying(list(streams.values()), there):
             kind = kinds.get(full_topic(self._namespace, stream.topic), '')
             if kind not in ('', '*'):

@@ -3,7 +3,9 @@
 """The registry of robots and their types, from the graph."""
 import rospy
 
+from mhri.base.config import ConfigError
 from mhri.base.robot_types import resolve_robot_type, Seen
+from mhri.robots.found_streams import choice_words, found_words, FoundStreams
 from mhri.robots.ros.graph_scan import robot_facts
 
 
@@ -11,16 +13,22 @@ class RobotRegistry:
     """The types of robots, from their parameters and the graph.
 
     A vanished topic or parameter never changes the type of a robot, which may be moving;
-    ``robot_type`` or new topics do. Not thread-safe except for :meth:`problem`.
+    ``robot_type`` or new topics do. Its sensors may have other names than in its type
+    (:class:`mhri.robots.found_streams.FoundStreams`). Not thread-safe except for :meth:`problem`
+    and :meth:`no_odometry`.
 
     :param types: {name: RobotType}
+    :param finder: returns the :class:`FoundStreams` of a new robot
     """
 
-    def __init__(self, types):
-        self._types = types
+    def __init__(self, types, finder=FoundStreams):
+        self._types, self._finder = types, finder
         self._seen = {}
         self._kinds = {}
+        self._found = {}
         self._problems = {}
+        self._no_odometry = {}
+        self._said = set()
         #: {name: parameters of the robot, nested}, as of the last query
         self.parameters = {}
 
@@ -35,7 +43,8 @@ class RobotRegistry:
         :raises MasterError: the master is unavailable; nothing changes
         """
         facts = robot_facts(rospy.get_name(), names, self._types, {
-            name: self._seen.get(name, Seen()) for name in known})
+            name: self._seen.get(name, Seen()) for name in known},
+            [name for name in names if not self.is_complete(name)])
         return {name: self.note(name, facts[name]) for name in names}
 
     def note(self, name, facts):
@@ -52,14 +61,39 @@ class RobotRegistry:
             self._seen.pop(name, None)
         self.parameters[name] = facts.parameters
         kind, errors = resolve_robot_type(self._types, name, facts.parameters, seen)
-        problems = [str(error) for error in errors]
+        if news or named or name not in self._kinds:
+            self._kinds[name] = kind
+        found = self._found.setdefault(name, self._finder())
+        overrides = facts.parameters.get('mhri')
+        # Its type may be about to come, with names of its own.
+        kind = found.update(self._kinds[name], None if self.presumed(name) else facts.published,
+                            sorted(overrides) if isinstance(overrides, dict) else ())
+        choices = {key: ': '.join(choice_words(name, key, topics))
+                   for key, topics in found.choices.items()}
+        self._no_odometry[name] = choices.get('odometry', '')
+        problems = [str(error) for error in errors + [
+            ConfigError('/' + name, 'mhri/' + key, words) for key, words in choices.items()]]
+        self._log(name, kind, problems)
+        return kind
+
+    def _log(self, name, kind, problems):
+        for key in kind.found:
+            words = '; to set it: '.join(found_words(name, key, kind))
+            if words not in self._said:
+                self._said.add(words)
+                rospy.loginfo('%s', words)
         if problems != self._problems.get(name, []):
             for text in problems:
                 rospy.logwarn('%s', text)
         self._problems[name] = problems
-        if news or named or name not in self._kinds:
-            self._kinds[name] = kind
-        return self._kinds[name]
+
+    def is_complete(self, name):
+        """Return whether nothing about a robot's sensors can be news, so that it is not asked."""
+        return name in self._found and self._found[name].complete
+
+    def no_odometry(self, name):
+        """Return what there is in place of the odometry of a robot's type, '' for nothing."""
+        return self._no_odometry.get(name, '')
 
     def presumed(self, name):
         """Return whether nothing is known of a robot but its name, so that its type is a guess."""
@@ -73,3 +107,4 @@ class RobotRegistry:
         """Forget the type of a robot and its facts."""
         self._seen.pop(name, None)
         self._kinds.pop(name, None)
+        self._found.pop(name, None)

@@ -117,8 +117,11 @@ class RobotMonitor:
             self._proof = None
         self._stopped, self._alone = stopped, alone
 
-    def view(self, problem='', **ours):
-        """Return the :class:`RobotView` of this moment; arguments as for :func:`robot_view`."""
+    def view(self, problem='', no_odometry='', **ours):
+        """Return the :class:`RobotView` of this moment; arguments as for :func:`robot_view`.
+
+        :param no_odometry: what there is in place of its odometry, '' for nothing
+        """
         now = self._clock()
         connections = self._streams[ODOMETRY].connections()
         with self._lock:
@@ -135,7 +138,8 @@ class RobotMonitor:
         return robot_view({
             'name': self.name, 'type_label': self.robot_type.label,
             'window': self.robot_type.window, 'link': state, 'age_s': age,
-            'note': link_note(state, age, self._heard_wall, now - self.added_at) or warning
+            'note': link_note(state, age, self._heard_wall, now - self.added_at, no_odometry)
+            or warning
             or self._streams[FETCHED].value() or (motion.note if motion else ''),
             'figures': figures, 'slow': bool(warning), **_numbers(motion),
             'battery': self._streams[BATTERY_CHARGE].value(), 'proof': proof,
@@ -146,7 +150,11 @@ class RobotMonitor:
             'offers_power': self.robot_type.motor_power is not None,
             'accessories': self._readouts.views(_SILENT.get(state, '')),
         }, self._drive.robot(self.name), self._drive.answers(),
-            self._streams[CONTROL].value(), problem, **ours)
+            self._streams[CONTROL].value(), problem, self._found_odometry(), **ours)
+
+    def _found_odometry(self):
+        """Return the topic of its odometry if its type does not have it, else ''."""
+        return self.robot_type.odometry[-1] if 'odometry' in self.robot_type.found else ''
 
     def _with_radio(self, figures):
         """Return figures with those of a link to the robot's own master, if there is one."""

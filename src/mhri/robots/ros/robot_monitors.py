@@ -88,12 +88,13 @@ class RobotMonitors:
         """Query the type of each silent robot again: it may have started meanwhile.
 
         A robot within reach keeps its type: topics that appear or vanish must not change it while
-        it moves.
+        it moves; but sensors that it lacks may be found.
         """
         with self._lock:
             names = [name for name in self._wanted if name not in self._links
                      or self._links[name].view().link in (WAITING, GONE)
-                     or self._links[name].robot_type.name == 'generic']
+                     or self._links[name].robot_type.name == 'generic'
+                     or not self._registry.is_complete(name)]
             known = [name for name in names if name in self._links and self._is_reached(name)]
         try:
             kinds = self._registry.look(names, known)
@@ -156,7 +157,7 @@ class RobotMonitors:
             link = self._links.get(name)
         if link is None:
             return RobotView(name=name, note='looking for it', **ours)
-        return link.view(self._registry.problem(name), **ours)
+        return link.view(self._registry.problem(name), self._registry.no_odometry(name), **ours)
 
     def close(self):
         """Unregister the topics of all robots (blocking)."""

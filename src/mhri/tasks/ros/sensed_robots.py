@@ -9,6 +9,7 @@ import rospy
 
 from mhri.base.names import NUMBERS
 from mhri.graph.ros.master_api import MasterApi
+from mhri.robots.found_streams import FoundStreams
 from mhri.robots.ros.registry import RobotRegistry
 from mhri.tasks.base import circles, NOWHERE, Other, Senses
 from mhri.tasks.ros.robot_senses import RobotSenses
@@ -26,7 +27,8 @@ class SensedRobots:
     """
 
     def __init__(self, types, clock, frames=None):
-        self._registry = RobotRegistry(types)
+        self._registry = RobotRegistry(
+            types, lambda: FoundStreams(('odometry', 'scan', 'battery')))
         self._clock = clock
         self._frames = frames
         self._lock = threading.Lock()
@@ -57,6 +59,8 @@ class SensedRobots:
                     self._robots[name] = robot
                 if before is not None:
                     before.close()
+            if self._registry.no_odometry(name):
+                self.get(name).odometry_note = self._registry.no_odometry(name)
 
     def open(self, names):
         """Open all sensors of these robots (blocking: calls the master).
