@@ -94,8 +94,8 @@ _WORDS: Dict[str, Tuple[str, str]] = {
     NO_ANSWER: ('commands reach it, its motors do not answer', ''),
     NOT_ALONE: ('not alone', '{}'),
     ODOMETRY_STUCK: ('odometry stuck', 'it does not follow commands'),
-    ODOMETRY_FOUND: ('odometry not proven', '{} is not of its type: drive it, a stop is confirmed '
-                     'once that follows'),
+    ODOMETRY_FOUND: ('odometry found', '{} is not of its type: drive a little, no stop is '
+                     'confirmed before it has followed'),
     LIMIT_RAISED: ('limit raised', 'deselect and select it to use its new speed limit'),
 }
 # Why motors have or may have no power: {``power`` of mhri/RobotDrive: text of POWER}.

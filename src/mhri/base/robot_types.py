@@ -337,11 +337,16 @@ def _as_number(value: object) -> Optional[float]:
         return None
 
 
+def is_topic(name: str) -> bool:
+    """Return whether a type may list a topic; the names on a master may be anything."""
+    return len(name) <= _MAX_LETTERS and _TOPIC.match(name) is not None
+
+
 def _topics(section: Section, key: str) -> Tuple[str, ...]:
     """Read a list of topics; only ``command`` may not be empty."""
     topics = section.texts(key, ())
     for topic in topics:
-        if len(topic) > _MAX_LETTERS or not _TOPIC.match(topic):
+        if not is_topic(topic):
             raise section.error(key, 'expected names of topics, e.g. cmd_vel, got {}'.format(
                 shown(topic)))
     if key == 'command' and not topics:

@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import Collection, Dict, List, Mapping, Optional, Sequence, Set, Tuple
 
 from mhri.base.names import topic_of
-from mhri.base.robot_types import PICTURE_KEYS, RobotType, SENSOR_TYPES
+from mhri.base.robot_types import is_topic, PICTURE_KEYS, RobotType, SENSOR_TYPES
 from mhri.base.text import listed
 
 _COMPRESSED = 'sensor_msgs/CompressedImage'
@@ -39,7 +39,7 @@ def _of_type(key: str, message_type: str, published: Mapping[str, str]) -> Set[s
     if key in PICTURE_KEYS:
         found |= {topic[:-len(end)] for topic, kind in published.items() for end in _TRANSPORTS
                   if kind == _COMPRESSED and topic.endswith(end)}
-    return found
+    return set(filter(is_topic, found))
 
 
 def likely_topics(key: str, message_type: str, published: Mapping[str, str]) -> List[str]:

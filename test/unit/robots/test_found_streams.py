@@ -44,6 +44,7 @@ CASES = {
         {'rgb': 'cam/image_raw'}, {}),
     'one namespace, no usual name': (pictures('cv/mask', 'cv/edges'), {},
                                      {'rgb': ['cv/edges', 'cv/mask']}),
+    'of an impossible name': ({'a"; rm': ODOM, 'x' * 251: ODOM}, {}, {}),
     'two cameras': (pictures('front/image_raw', 'rear/image_raw'), {},
                     {'rgb': ['front/image_raw', 'rear/image_raw']}),
     'depth is no colour': (pictures('rs/depth/image_rect_raw'),

@@ -330,7 +330,7 @@ class CameraFeed:
         others = likely_topics(self.kind, RAW_TYPE, own_topics(self.robot, published)) \
             if self._below else ()
         if others:
-            return 'no {} under its name'.format(self.word), ': '.join(
+            return 'no {} under its name'.format(self.word), '; to use one: '.join(
                 choice_words(self.robot, self.kind, others))
         return 'no {}; is its driver running?'.format(self.word), \
             'nobody publishes ' + (' or '.join(self._topics) or 'a picture')

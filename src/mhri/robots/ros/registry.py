@@ -68,12 +68,11 @@ class RobotRegistry:
         # Its type may be about to come, with names of its own.
         kind = found.update(self._kinds[name], None if self.presumed(name) else facts.published,
                             sorted(overrides) if isinstance(overrides, dict) else ())
-        choices = {key: ': '.join(choice_words(name, key, topics))
+        choices = {key: '; to use one: '.join(choice_words(name, key, topics))
                    for key, topics in found.choices.items()}
         self._no_odometry[name] = choices.get('odometry', '')
-        problems = [str(error) for error in errors + [
-            ConfigError('/' + name, 'mhri/' + key, words) for key, words in choices.items()]]
-        self._log(name, kind, problems)
+        self._log(name, kind, [str(error) for error in errors + [
+            ConfigError('/' + name, key + ' not found', words) for key, words in choices.items()]])
         return kind
 
     def _log(self, name, kind, problems):
@@ -100,8 +99,8 @@ class RobotRegistry:
         return not (self.parameters.get(name) or self._seen.get(name, Seen()).anything())
 
     def problem(self, name):
-        """Return the problem with the parameters of a robot in words, '' for none."""
-        return ''.join(self._problems.get(name, [])[:1])
+        """Return the problem with a robot's parameters or sensors in words, '' for none."""
+        return ''.join(self._problems.get(name, [])[:1]).partition(': ')[2]
 
     def forget(self, name):
         """Forget the type of a robot and its facts."""
