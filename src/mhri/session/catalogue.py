@@ -14,6 +14,8 @@ from mhri.recording.recording import duration_text, size_text
 
 # Maximum number of sessions in the list, and of robots named in a row.
 MAX_SESSIONS, MAX_NAMED = 200, 4
+# A line follows the one before it within these times [s], or the clock leapt.
+_BACK_S, _ON_S = -60.0, 86400.0
 _PROGRESS = re.compile(r'^(report|film): (\d{1,3}) %')
 
 
@@ -80,9 +82,10 @@ def _day(started: float) -> Optional[float]:
 
 
 def _length_s(lines: Sequence[SessionEvent]) -> Optional[float]:
-    """Return the length by the lines [s], None without lines."""
+    """Return the length by the lines [s] without leaps of the clock, None without lines."""
     times = [line.ros for line in lines]
-    return max(times) - min(times) if times else None
+    steps = [after - before for before, after in zip(times, times[1:])]
+    return sum(step for step in steps if _BACK_S < step < _ON_S) if times else None
 
 
 def newest(names: Iterable[str]) -> Tuple[str, ...]:

@@ -7,13 +7,16 @@ import sys
 
 import pytest
 
-NODES = ('mux', 'tasks', 'mhri_joy', 'mhri_session', 'panel')
+from support.paths import GUARD
+from support.ros_system import node_words
+
+NODES = ('mux', 'tasks', 'mhri_joy', 'mhri_session', 'panel', 'mhri_guard')
 
 
 def refused(node, **env):
     """Return the lines with which a program ends."""
     done = subprocess.run(
-        [sys.executable, '-c', 'from mhri.nodes.{} import main; main()'.format(node)],
+        [sys.executable, GUARD] if node == 'mhri_guard' else node_words(node),
         env={**os.environ, **env}, timeout=60, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
         universal_newlines=True)
     assert done.returncode == 1, done.stdout
