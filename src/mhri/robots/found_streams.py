@@ -123,7 +123,7 @@ class FoundStreams:
         for key in self._keys(kind) if published is not None else ():
             self._look(kind, key, published or {})
         changes = {key: getattr(kind, key) + (topic,) for key, topic in self._taken.items()}
-        return replace(kind, found=tuple(sorted(self._taken)), **changes)  # type: ignore[arg-type]
+        return replace(kind, found=tuple(sorted(self._taken)), **changes)
 
     def _look(self, kind: RobotType, key: str, published: Mapping[str, str]) -> None:
         message_type = kind.sensor_types[key]
