@@ -125,7 +125,8 @@ pack_link() {
   cp "$REPO/scripts/mhri_link" "$folder/scripts"
   # The modules that mhri_link imports are in these.
   (cd "$REPO/src/mhri" &&
-    cp -r __init__.py base graph recording robots driving link nodes "$folder/src/mhri")
+    cp -r __init__.py base graph recording robots camera driving link nodes \
+      "$folder/src/mhri")
   cp -r "$messages/msg" "$messages/srv" "$folder/src/mhri"
   find "$folder" -name __pycache__ -prune -exec rm -rf {} +
   tar -c -C "$folder" --sort=name --mtime=@0 --owner=0 --group=0 --mode=go-w . |

@@ -125,9 +125,12 @@ def test_a_robot_whose_odometry_fails_stands_alone_and_waits_for_neutral(world):
     import rospy
     from nav_msgs.msg import Odometry
     failing, other = world.robots
-    odometry = rospy.Publisher('/{}/odom'.format(ROBOTS[0]), Odometry, queue_size=1)
-    wait_for(odometry.get_num_connections, what='the drive to listen')
-    beats = rospy.Timer(rospy.Duration(0.05), lambda event: odometry.publish(Odometry()))
+    # Of both: where one node is two robots and measures one, the other is taken for its input.
+    odometry = [rospy.Publisher('/{}/odom'.format(name), Odometry, queue_size=1)
+                for name in ROBOTS]
+    wait_for(lambda: all(one.get_num_connections() for one in odometry),
+             what='the drive to listen')
+    beats = rospy.Timer(rospy.Duration(0.05), lambda event: odometry[0].publish(Odometry()))
     world.drive()
     since = world.fail('on_odometry')
     world.state.wait_robot(ROBOTS[0], lambda robot: robot.stands == 'joining', 'it')
@@ -136,4 +139,5 @@ def test_a_robot_whose_odometry_fails_stands_alone_and_waits_for_neutral(world):
     told('the odometry of one robot', [zero - since], AT_ONCE_S + BEAT_S)
     assert (0.0, 0.0) not in [entry[1:] for entry in other.after(since)], 'the other drives on'
     beats.shutdown()
-    odometry.unregister()
+    for one in odometry:
+        one.unregister()

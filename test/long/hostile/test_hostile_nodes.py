@@ -227,12 +227,18 @@ def begin(system, number, module, parameters):
     """Start a node with parameters; return its process."""
     import rospy
     place = '/start{}'.format(number)
-    name = 'base' if module == 'sim_robot' else module
+    # Only a robot goes by its namespace.
+    name, node = '__name:=start{}_{}'.format(number, module), node_at(number, module)
     if module == 'sim_robot':
+        name, node = '__ns:=' + place, place + '/base'
         rospy.set_param(place + '/robot_type', 'turtlebot2')
     for key, value in parameters.items():
-        rospy.set_param('{}/{}/{}'.format(place, name, key), value)
-    return system.node(module, '__ns:=' + place)
+        rospy.set_param('{}/{}'.format(node, key), value)
+    return system.node(module, name)
+
+
+def node_at(number, module):
+    return '/start{}_{}'.format(number, module)
 
 
 @pytest.mark.parametrize('first', range(0, len(STARTS), AT_ONCE))
@@ -243,7 +249,7 @@ def test_parameters_at_the_start(system, first):
     processes = [begin(system, number, *row[:2]) for number, row in rows]
     for (number, (module, parameters, said)), process in zip(rows, processes):
         what = '{} {!r:.100}'.format(module, parameters)
-        service = '/start{}/{}/set_suspended'.format(number, module)
+        service = node_at(number, module) + '/set_suspended'
         services = rosgraph.Master('/attacker').getSystemState
         wait_for(lambda: process.poll() is not None or not said and any(
             name == service for name, _ in services()[2]), 60.0, what + ': an end or a service',

@@ -372,6 +372,27 @@ def test_every_imported_name_exists():
         'a.py', 'from rospy import no_such; from mhri.base import names; from mhri.msg import X')
 
 
+def closure(module, found):
+    """Add the modules of mhri that a module imports, and those that these import."""
+    path = SOURCE.joinpath(*module.split('.')[1:])
+    path = path / '__init__.py' if path.is_dir() else path.with_suffix('.py')
+    if module in found or is_message(module) or not path.exists():
+        return found
+    found.add(module)
+    for _, name in imports(path.read_text(encoding='utf-8')):
+        parts = name.split('.')
+        for number in range(2, len(parts) + 1) if parts[0] == 'mhri' else ():
+            closure('.'.join(parts[:number]), found)
+    return found
+
+
+def test_what_is_sent_to_a_robot_has_all_that_its_link_imports():
+    script = (REPO / 'utils/host/turtlebot_deploy.sh').read_text(encoding='utf-8')
+    sent = set(re.search(r'cp -r __init__.py ([a-z \\\n]+) "', script).group(1).split()) - {'\\'}
+    needed = {name.split('.')[1] for name in closure('mhri.nodes.mhri_link', set())}
+    assert sent == needed and 'link' in needed
+
+
 def test_no_folder_has_more_than_30_files():
     assert crowded(path for path in SOURCE.rglob('*')
                    if path.is_file() and path.suffix != '.pyc') == set()

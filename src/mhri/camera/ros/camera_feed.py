@@ -327,9 +327,10 @@ class CameraFeed:
         if offers:
             return '{} offers {}, not {}'.format(
                 self.robot, ', '.join(offer.transport for offer in offers), transport), ''
-        others = likely_topics(self.kind, RAW_TYPE, own_topics(self.robot, published)) \
-            if self._below else ()
-        if others:
+        others = [topic for topic in likely_topics(
+            self.kind, RAW_TYPE, own_topics(self.robot, published))
+                  if self._below + topic not in self._topics]
+        if self._below and others:
             return 'no {} under its name'.format(self.word), '; to use one: '.join(
                 choice_words(self.robot, self.kind, others))
         return 'no {}; is its driver running?'.format(self.word), \
