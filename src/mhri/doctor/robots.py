@@ -72,9 +72,9 @@ def robots_of(graph: Graph, types: Mapping[str, RobotType], ignore: IgnoreList) 
         name, at_root = candidate.name, candidate.seen.at_root
         parameters = parameters_of(name, graph.parameters, at_root)
         template, errors = resolve_robot_type(types, name, parameters, candidate.seen)
-        found, overrides = FoundStreams(), parameters.get('mhri')
+        found = FoundStreams()
         own = own_topics(name, published, spaces if at_root else None)
-        template = found.update(template, own, overrides if isinstance(overrides, dict) else ())
+        template = found.update(template, own, parameters)
         robots.append(Robot(candidate, template, parameters, tuple(errors), found.choices))
     return robots
 

@@ -3,7 +3,7 @@
 """Finds a robot's sensors that have other names than in its type, by their message types."""
 import re
 from dataclasses import replace
-from typing import Collection, Dict, List, Mapping, Optional, Sequence, Set, Tuple
+from typing import Collection, Dict, FrozenSet, List, Mapping, Optional, Sequence, Set, Tuple
 
 from mhri.base.names import topic_of
 from mhri.base.robot_types import is_topic, PICTURE_KEYS, RobotType, SENSOR_TYPES
@@ -88,7 +88,7 @@ class FoundStreams:
     def __init__(self, sensors: Collection[str] = tuple(SENSOR_TYPES) + ('odometry',)) -> None:
         self._sensors = sensors
         self._kind: Optional[RobotType] = None
-        self._named: Tuple[str, ...] = ()
+        self._named: FrozenSet[str] = frozenset()
         self._there: Set[str] = set()
         self._taken: Dict[str, str] = {}
         #: {sensor: its candidates, at least one, none of which is used}
@@ -110,15 +110,18 @@ class FoundStreams:
                 and not (key == 'depth' and not kind.scan)]
 
     def update(self, kind: RobotType, published: Optional[Mapping[str, str]],
-               named: Collection[str] = ()) -> RobotType:
+               parameters: Mapping[str, object]) -> RobotType:
         """Return the type with the found topics appended to its lists.
 
         :param kind: the robot's type without them
         :param published: of :func:`own_topics`; None if unknown: nothing changes
-        :param named: sensors whose topics the robot's parameters give; there nothing is used
+        :param parameters: of the robot, nested; for a sensor with topics of its own there nothing
+            else is used
         """
-        if kind != self._kind or tuple(named) != self._named:
-            self._kind, self._named = kind, tuple(named)
+        overrides = parameters.get('mhri')
+        named = frozenset(overrides if isinstance(overrides, dict) else ())
+        if kind != self._kind or named != self._named:
+            self._kind, self._named = kind, named
             self._there, self._taken, self.choices = set(), {}, {}
         for key in self._keys(kind) if published is not None else ():
             self._look(kind, key, published or {})

@@ -28,7 +28,8 @@ def robot_view(heard: Mapping[str, Any], driven: Any = None, answers: bool = Tru
     :param answers: whether the drive answers; otherwise its state is ignored
     :param control: its ``mhri/LinkControl``, None without one
     :param problem: the problem with its parameters, '' for none
-    :param found: the topic of its odometry if its type does not have it
+    :param found: the topic of its odometry if that is not proven, see
+        :class:`mhri.robots.found_streams.FoundStreams`
     :param ours: fields of the screen itself
     """
     fields, live = dict(heard), heard['link'] == LIVE
@@ -39,6 +40,7 @@ def robot_view(heard: Mapping[str, Any], driven: Any = None, answers: bool = Tru
             fields.get('accessories', ()), driven.accessories))
         if driven.stands == reasons.HARDWARE_STOP:
             fields['hardware_stop'] = True
+        fields['odometry_follows'] &= not found
         warning = _warning(driven, fields.get('proof') is not None, found)
         if live:
             fields['note'] = (warning.sentence if warning else '') or fields.get('note', '') or \
@@ -99,9 +101,10 @@ def _warning(robot: Any, proved: bool, found: str) -> Optional[Reason]:
         return Reason(robot.stands)
     if robot.also_commanded_by:
         return Reason(reasons.NOT_ALONE, (also_words(robot.also_commanded_by),))
+    if found:
+        return Reason(reasons.ODOMETRY_FOUND, (found,))
     if not robot.odometry_follows:
-        return Reason(reasons.ODOMETRY_FOUND, (found,)) if found \
-            else Reason(reasons.ODOMETRY_STUCK)
+        return Reason(reasons.ODOMETRY_STUCK)
     return Reason(reasons.LIMIT_RAISED) if robot.stands == reasons.LIMIT_RAISED else None
 
 

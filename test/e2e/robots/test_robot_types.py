@@ -7,6 +7,7 @@ panel's.
 """
 import signal
 import sys
+import time
 import unittest
 
 import rosgraph
@@ -20,9 +21,11 @@ try:
 except ImportError:
     sys.path.insert(0, MESSAGES)
 
+from mhri.base.views import PROOF_NOT_CONFIRMED, PROOF_WAITING  # noqa: E402
 from mhri.driving.ros.drive_client import DriveClient  # noqa: E402
 from mhri.graph.ros.resources import robot_types  # noqa: E402
 from mhri.graph.ros.worker import Worker  # noqa: E402
+from mhri.msg import RobotDrive  # noqa: E402
 from mhri.robots.ros.graph_scan import look_for_robots, shipped_ignore_list  # noqa: E402
 from mhri.robots.ros.robot_monitors import RobotMonitors  # noqa: E402
 from support.fake_mux import FakeOperator  # noqa: E402
@@ -41,6 +44,9 @@ PARAMETERS = ('/robot_type', '/robot_model', '/robot_name')
 
 class RobotTypesTest(unittest.TestCase):
 
+    # The monitors of the test that runs.
+    shown = None
+
     @classmethod
     def setUpClass(cls):
         cls.types, errors = robot_types()
@@ -48,7 +54,9 @@ class RobotTypesTest(unittest.TestCase):
         cls.mux = start_mux('__name:=mux')
         cls.stick, cls.operator = Stick(graph.STICK), FakeOperator()
         cls.operator.set(5.0, 5.0)
-        cls.drive = DriveClient(lambda state, now: None, speaks=False).start()
+        cls.drive = DriveClient(
+            lambda state, now: cls.shown and cls.shown.on_drive(state.robots),
+            speaks=False).start()
         cls.worker = Worker('feeds').start()
         cls.stick.wait_listener()
         wait_for(cls.drive.answers, TIMEOUT_S)
@@ -62,7 +70,7 @@ class RobotTypesTest(unittest.TestCase):
 
     def setUp(self):
         self.ignore = shipped_ignore_list()
-        self.monitors = RobotMonitors(self.types, self.drive, self.worker)
+        type(self).shown = self.monitors = RobotMonitors(self.types, self.drive, self.worker)
         self.names = []
         self.addCleanup(self.end)
 
@@ -212,6 +220,23 @@ class RobotTypesTest(unittest.TestCase):
         insist(follows, 'the odometry to follow the stick')
         self.operator.check()
         wait_for(lambda: self.view('other').note == '', TIMEOUT_S, 'nothing to be wrong with it')
+
+    def test_no_stop_is_confirmed_by_it_where_the_drive_has_not_found_it(self):
+        self.start('cmd_vel', 'odometry/filtered', namespace='/unknown')
+        said = RobotDrive(name='unknown', topic='/unknown/cmd_vel', odometry_follows=True)
+
+        class Unaware:
+            robot, answers = staticmethod(lambda name: said), staticmethod(lambda: True)
+        monitors = RobotMonitors(self.types, Unaware, self.worker)
+        monitors.add('unknown')
+        monitors.connect('unknown', self.found('unknown')['unknown'])
+        self.addCleanup(monitors.close)
+        wait_for(lambda: monitors.view('unknown').link == 'live', TIMEOUT_S, 'its odometry')
+        monitors.on_drive([said])
+        monitors.on_stop(True, time.monotonic())
+        proof = wait_for(lambda: [one for one in [monitors.view('unknown').proof]
+                                  if one.state != PROOF_WAITING], TIMEOUT_S, 'the end of it')[0]
+        self.assertEqual(proof.state, PROOF_NOT_CONFIRMED)
 
     def test_odometry_of_another_name_at_the_root(self):
         """That of a robot with a namespace is not its own."""

@@ -92,6 +92,8 @@ def test_others_who_command_it_are_named():
 
 
 def test_odometry_that_does_not_follow_is_said():
+    found = robot_view(view(), drive(0.3), True, found='filtered')
+    assert not found.odometry_follows and found.slow and 'filtered' in found.note
     after = robot_view(view(), drive(0.3, odometry_follows=False), True)
     assert not after.odometry_follows and after.slow and 'odometry' in after.note
 

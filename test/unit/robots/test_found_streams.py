@@ -61,7 +61,7 @@ def test_what_is_found(case, at_root):
     published, found, choices = CASES[case]
     kind, slash = (KIND.at_root(), '/') if at_root else (KIND, '')
     streams = FoundStreams()
-    changed = streams.update(kind, {slash + topic: of for topic, of in published.items()})
+    changed = streams.update(kind, {slash + topic: of for topic, of in published.items()}, {})
     assert changed.found == tuple(sorted(found))
     assert changed == replace(kind, found=changed.found, **{
         key: getattr(kind, key) + (slash + topic,) for key, topic in found.items()})
@@ -89,42 +89,43 @@ SEQUENCES = {
 def test_a_moving_robot_keeps_its_odometry(case):
     streams = FoundStreams()
     for published, odometry in SEQUENCES[case]:
-        assert streams.update(KIND, published).odometry == odometry
+        assert streams.update(KIND, published, {}).odometry == odometry
 
 
 def test_only_what_is_looked_for_is_found():
     """A camera that appears must not stop a robot."""
     streams = FoundStreams(('odometry', 'scan'))
-    assert streams.update(KIND, pictures('front/image_raw')) == KIND and not streams.choices
-    streams.update(KIND, {'odom': ODOM, 'scan': SCAN})
+    assert streams.update(KIND, pictures('front/image_raw'), {}) == KIND and not streams.choices
+    streams.update(KIND, {'odom': ODOM, 'scan': SCAN}, {})
     assert streams.complete
 
 
 def test_another_type_begins_anew():
     streams = FoundStreams()
-    streams.update(KIND, FILTERED)
+    streams.update(KIND, FILTERED, {})
     other = replace(KIND, odometry=('odometry/filtered',))
-    assert streams.update(other, FILTERED) == other
+    assert streams.update(other, FILTERED, {}) == other
 
 
 @pytest.mark.parametrize('kind, named', [
-    (replace(KIND, odometry=()), ()), (replace(KIND, instance='turtle1'), ()),
-    (replace(KIND, odometry=('/elsewhere/odom',)), ()), (KIND, ('odometry',))])
+    (replace(KIND, odometry=()), {}), (replace(KIND, instance='turtle1'), {}),
+    (replace(KIND, odometry=('/elsewhere/odom',)), {}), (KIND, {'odometry': ['x']})])
 def test_what_is_never_replaced(kind, named):
     """It has none, one node has several robots, it is outside of the robot, it was named."""
     streams = FoundStreams()
-    assert streams.update(kind, FILTERED, named) == kind
+    assert streams.update(kind, FILTERED, {'mhri': named}) == kind
     assert streams.choices == ({'odometry': ['odometry/filtered']} if named else {})
 
 
 def test_the_depth_camera_that_the_brake_sees_with():
     """Its mount is in the type; that of another one is not."""
     kind = replace(KIND, scan=())
-    assert FoundStreams().update(kind, pictures('rs/depth/image_raw')) == kind
+    assert FoundStreams().update(kind, pictures('rs/depth/image_raw'), {}) == kind
 
 
 def test_a_found_laser_is_not_assumed_to_face_forward():
-    kind = FoundStreams().update(replace(KIND, lasers=((0.1, 0.0, 0.0),)), {'rear/scan': SCAN})
+    kind = FoundStreams().update(replace(KIND, lasers=((0.1, 0.0, 0.0),)),
+                                 {'rear/scan': SCAN}, {})
     assert kind.laser_place(0) == (0.1, 0.0, 0.0) and kind.laser_place(1) is None
 
 
@@ -132,9 +133,9 @@ def test_a_complete_robot_is_not_asked_again():
     streams = FoundStreams()
     kind = replace(KIND, rgb=(), depth=(), scan=(), imu=())
     assert not streams.complete
-    streams.update(kind, FILTERED)
+    streams.update(kind, FILTERED, {})
     assert not streams.complete
-    streams.update(kind, WHEELS)
+    streams.update(kind, WHEELS, {})
     assert streams.complete
 
 
@@ -145,7 +146,7 @@ def test_own_topics():
 
 
 def test_the_words_name_the_line_that_sets_it():
-    kind = FoundStreams().update(KIND, FILTERED)
+    kind = FoundStreams().update(KIND, FILTERED, {})
     line = 'rosparam set /bot1/mhri/odometry "[odometry/filtered]"'
     assert found_words('bot1', 'odometry', kind)[1] == line
     assert choice_words('bot1', 'odometry', ['odometry/filtered', 'x'])[1] == line

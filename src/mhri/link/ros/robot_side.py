@@ -305,11 +305,10 @@ class RobotSide(Side):
                           if value is not None)
         kind, errors = resolve_robot_type(self._types, self.name, parameters)
         own, kinds = rospy.get_name(), dict(map(tuple, types))
-        start, overrides = self._namespace + '/', parameters.get('mhri')
+        start = self._namespace + '/'
         kind = self._found.update(
             kind, {topic[len(start):]: kinds.get(topic, '') for topic, nodes in state[0]
-                   if topic.startswith(start) and set(nodes) != {own}},
-            sorted(overrides) if isinstance(overrides, dict) else ())
+                   if topic.startswith(start) and set(nodes) != {own}}, parameters)
         for error in errors:
             rospy.logwarn_throttle(60.0, '{}'.format(error))
         streams = {full_topic(self._namespace, stream.topic): stream

@@ -64,10 +64,9 @@ class RobotRegistry:
         if news or named or name not in self._kinds:
             self._kinds[name] = kind
         found = self._found.setdefault(name, self._finder())
-        overrides = facts.parameters.get('mhri')
         # Its type may be about to come, with names of its own.
         kind = found.update(self._kinds[name], None if self.presumed(name) else facts.published,
-                            sorted(overrides) if isinstance(overrides, dict) else ())
+                            facts.parameters)
         choices = {key: '; to use one: '.join(choice_words(name, key, topics))
                    for key, topics in found.choices.items()}
         self._no_odometry[name] = choices.get('odometry', '')

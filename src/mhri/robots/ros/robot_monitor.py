@@ -13,12 +13,12 @@ from mhri.robots.figures import FIGURES_S, thinned_words
 from mhri.robots.link import link_note, link_state
 from mhri.robots.link_quality import link_warning, LinkQuality
 from mhri.robots.robot_view import robot_view
-from mhri.robots.ros.convert import round_trip_s
+from mhri.robots.ros.convert import from_twist, round_trip_s
 from mhri.robots.ros.readouts import Readouts
 from mhri.robots.ros.streams import (
     BATTERY_CHARGE, CONTROL, DROPPED, FETCHED, HARDWARE_STOP, ODOMETRY, RADIO, RobotStreams)
 from mhri.robots.stamp_age import delay_of, StampAge
-from mhri.robots.stop_proof import StopProof
+from mhri.robots.stop_proof import OdometryWitness, StopProof
 
 DROPPED_SHOWN_S = 1.0
 # A robot that has taken commands for this long without odometry has none.
@@ -55,7 +55,9 @@ class RobotMonitor:
         self._motion = None
         self._quality = quality()
         self._ages = {}
-        self._proof, self._follows = None, True
+        self._proof, self._follows = None, not self._found_odometry()
+        # Odometry that was found is judged here, too: the drive may not have found it.
+        self._witness = OdometryWitness(self._follows)
         # Whether stop-all is in force, and the robot's own stop.
         self._stopped = self._alone = False
         self._streams = RobotStreams(
@@ -70,7 +72,9 @@ class RobotMonitor:
         """Handle the state of this robot in the drive (``mhri/RobotDrive``), on a ROS thread."""
         with self._lock:
             self._quality.on_round_trip(round_trip_s(robot))
-            self._follows = robot.odometry_follows
+            if not self._is_proven():
+                self._witness.on_command(from_twist(robot.sent), self._clock())
+            self._follows = robot.odometry_follows and self._is_proven()
             if self._proof is not None:
                 self._proof.follows = self._follows
             self._settle(self._stopped, robot.stands == STOPPED_ALONE, self._clock())
@@ -89,6 +93,8 @@ class RobotMonitor:
                 self._quality.on_message(number, delay_of(came_at, stamp_s), now)
             self._heard_at = now
             # Malformed messages prove nothing, nor does anything before them.
+            if self._motion is not None and not self._is_proven():
+                self._witness.on_motion(self._motion, now, math.nan)
             if self._proof is not None and self._motion is not None:
                 self._proof.on_motion(self._motion, now, late_s)
 
@@ -150,7 +156,12 @@ class RobotMonitor:
             'offers_power': self.robot_type.motor_power is not None,
             'accessories': self._readouts.views(_SILENT.get(state, '')),
         }, self._drive.robot(self.name), self._drive.answers(),
-            self._streams[CONTROL].value(), problem, self._found_odometry(), **ours)
+            self._streams[CONTROL].value(), problem,
+            '' if self._is_proven() else self._found_odometry(), **ours)
+
+    def _is_proven(self):
+        """Return whether its odometry is that of its type, or has followed a command."""
+        return self._witness.follows or not self._found_odometry()
 
     def _found_odometry(self):
         """Return the topic of its odometry if its type does not have it, else ''."""
