@@ -83,7 +83,6 @@ class Cloud:
     points: np.ndarray
     colours: Optional[np.ndarray] = None
     intensity: Optional[np.ndarray] = None
-    frame_id: str = ''
     optical: bool = False
     sent: int = 0
     kept_of: int = 1
@@ -118,8 +117,7 @@ def parse_cloud(raw: RawCloud, received_s: float = 0.0) -> Cloud:
     optical = raw.frame_id.endswith(_OPTICAL)
     _check_sizes(raw)
     if not raw.width * raw.height:
-        return Cloud(np.empty((0, 3), np.float32), None, None, raw.frame_id, optical,
-                     received_s=received_s)
+        return Cloud(np.empty((0, 3), np.float32), None, None, optical, received_s=received_s)
     view = _View(raw)
     axes = view.columns(_AXES)
     if axes is None:
@@ -132,8 +130,7 @@ def parse_cloud(raw: RawCloud, received_s: float = 0.0) -> Cloud:
             row.reshape(axis.shape)[...] = axis
     kept = _measured(points)
     return Cloud(_chosen(points, kept).T, _only(view.colours(), kept), _only(
-        view.intensity(), kept), raw.frame_id, optical, raw.width * raw.height, view.kept_of,
-        received_s)
+        view.intensity(), kept), optical, raw.width * raw.height, view.kept_of, received_s)
 
 
 def slopes(lens: Lens, width: int, height: int) -> Tuple[np.ndarray, np.ndarray]:

@@ -17,7 +17,6 @@ from mhri.recording.recording import RECORDING, ros_home
 from mhri.robots.ros.streams import MOCAP
 from mhri.screen.presenters.draw_guard import DrawGuard
 from mhri.screen.presenters.path_presenter import PathPresenter
-from mhri.screen.presenters.rviz_cloud import RvizCloud
 from mhri.sensors.nearest import nearest, OLD_S
 
 # Short names of streams.
@@ -40,7 +39,6 @@ class TilePresenter:
         self._drift = DriftMeter()
         self._path = PathPresenter(window)
         self._wired = False
-        self._rviz = None
         self._held_back = ''
         self._nearest = None
         window.recording.record_requested.connect(self._record)
@@ -105,8 +103,6 @@ class TilePresenter:
         if hasattr(widget, 'show_frame'):
             self._draw_camera(widget, feed)
             return
-        if key == CLOUD and self._rviz is None:
-            self._rviz = RvizCloud(widget, feed)
         value = feed.take()
         if value is not None:
             widget.show_value(value)

@@ -19,15 +19,12 @@ from mhri.sensors.orbit import fitted, read_orbit
 OLD_S = 1.0
 # Period of checking for a finished drawing.
 LOOK_MS = 15
-# How long the reason of a refusal is shown.
-REFUSAL_S = 6.0
 WAITING = 'waiting for the first cloud'
 NOTHING = 'nothing measured'
 # The colourings: key, label, unit of the scale.
 _COLOURINGS = ((HEIGHT, 'Height', 'm'), (DISTANCE, 'Distance', 'm'), (INTENSITY, 'Intensity', ''),
                (COLOUR, 'Colour', ''))
 _UNITS = {key: unit for key, _, unit in _COLOURINGS}
-_RVIZ_HELP = 'show it with RViz instead; robots stop while that is being loaded'
 _HELP = ('drag to turn, drag with the right button to move, wheel to zoom, '
          'double click to show all')
 
@@ -43,14 +40,11 @@ class CloudView(WithTools):
     """Shows point clouds; the first one determines the viewpoint.
 
     Axes (orange ahead, green left, blue up) mark the sensor, above the white circle of the robot.
-    Child widgets: ``canvas``, ``status_label``, ``colour_combo``, ``reset_button``,
-    ``rviz_button``.
+    Child widgets: ``canvas``, ``status_label``, ``colour_combo``, ``reset_button``.
     """
 
     #: the picture of a cloud has been drawn
     drawn = Signal()
-    #: RViz's own widget is requested instead, or no longer
-    rviz_chosen = Signal(bool)
 
     def __init__(self, parent=None):
         super().__init__(parent)
@@ -59,7 +53,7 @@ class CloudView(WithTools):
         #: meaning of the colours, see :func:`colourings`
         self.colouring = HEIGHT
         self._stream = ''
-        self._numbers_pace = self._status_pace = Pace()
+        self._numbers = Pace()
         self._drawing = CloudDrawing()
         self._build()
         self._connect()
@@ -76,17 +70,13 @@ class CloudView(WithTools):
         self.status_label.setFont(theme.number_font(self.font()))
         self.colour_combo = Combo(self)
         self.reset_button = Button('Show all', self)
-        self.rviz_button = Button('RViz', self, checkable=True)
-        self.rviz_button.hide()
-        self._instead = None
         self._timer = QTimer(self, interval=LOOK_MS, timeout=self._look)
         for widget, name, spoken in (
                 (self.colour_combo, 'colour_combo', 'what the colours of the points mean'),
-                (self.reset_button, 'reset_button', 'look at all points, from behind the robot'),
-                (self.rviz_button, 'rviz_button', _RVIZ_HELP)):
+                (self.reset_button, 'reset_button', 'look at all points, from behind the robot')):
             theme.for_fingers(widget, name, spoken, spoken)
         self.lay_out(self.canvas, (self.status_label, 1), (self.colour_combo, 0),
-                     (self.reset_button, 0), (self.rviz_button, 0))
+                     (self.reset_button, 0))
 
     def _connect(self):
         """Connect the canvas, the choice of colours and the drawing."""
@@ -95,7 +85,6 @@ class CloudView(WithTools):
         self.canvas.resized.connect(self._ask)
         self.colour_combo.activated[int].connect(self._on_colour)
         self.reset_button.clicked.connect(lambda *_: self.show_all())
-        self.rviz_button.clicked[bool].connect(self.rviz_chosen)
 
     def _restore(self):
         """Set the initial state, without a cloud."""
@@ -105,37 +94,6 @@ class CloudView(WithTools):
     def idle(self):
         """Whether the newest cloud has been drawn from the present viewpoint."""
         return self._drawing.idle
-
-    @property
-    def frame_id(self):
-        """The frame of the newest cloud, None before the first."""
-        return None if self._cloud is None else self._cloud.frame_id
-
-    def offer_rviz(self, offered):
-        """Show or hide the button for RViz's widget."""
-        self.rviz_button.setVisible(offered)
-
-    def show_instead(self, widget):
-        """Show another widget in place of the drawn cloud; None: the cloud again."""
-        before, self._instead = self._instead, widget
-        if before is not None:
-            before.setParent(None)
-            before.deleteLater()
-        if widget is not None:
-            self.layout().insertWidget(0, widget, 1)
-            widget.show()
-        self.canvas.setVisible(widget is None)
-        for control in (self.colour_combo, self.reset_button):
-            control.setEnabled(widget is None)
-        self.rviz_button.setChecked(widget is not None)
-        self._ask()
-
-    def refuse_rviz(self, reason):
-        """Show why RViz's widget is unavailable."""
-        self.show_instead(None)
-        self._status_pace = Pace(REFUSAL_S)
-        self._status_pace.due()
-        self.status_label.show_text(reason)
 
     def show_value(self, cloud):
         """Show a :class:`mhri.sensors.point_cloud.Cloud`."""
@@ -166,8 +124,7 @@ class CloudView(WithTools):
 
     def _show_line(self):
         """Show the number of points, and the state of their stream if known."""
-        if self._cloud is not None and self._status_pace.due():
-            self._status_pace = self._numbers_pace
+        if self._cloud is not None and self._numbers.due():
             points = points_text(self._cloud)
             self.status_label.show_text('{}  {}'.format(points, self._stream).rstrip(),
                                         shorter=(points,))

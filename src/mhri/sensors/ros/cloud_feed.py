@@ -109,8 +109,6 @@ class CloudFeed(CameraFeed):
         self.word = 'point cloud'
         self._clouds = [topic_of(robot, topic) for topic in clouds]
         self._depths = [topic_of(robot, topic) for topic in depths]
-        #: the cloud topic published now, '' for none
-        self.cloud_topic = ''
         self.set_view(max_hz=MAX_HZ)
 
     def refused(self):
@@ -125,7 +123,6 @@ class CloudFeed(CameraFeed):
         """Return the offers, best first: clouds, then depth pictures with a lens."""
         offers = [Offer('cloud', topic) for topic in self._clouds
                   if published.get(topic) == CLOUD_TYPE]
-        self.cloud_topic = offers[0].topic if offers else ''
         depths = [topic for topic in self._depths if published.get(info_topic(topic)) == _INFO_TYPE]
         return offers + find_offers(DEPTH, depths, published)
 
