@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""The dialogue that writes a profile for a pad, without terminal, device or clock.
+"""The dialogue that writes a profile for a pad, without screen, device or clock.
 
 The steps are::
 
@@ -24,17 +24,16 @@ _BUTTONS = ('dead_man', 'turbo') + ACTIONS
 STEPS = (REST, FORWARD, LEFT) + _BUTTONS + (DONE,)
 
 _PROMPTS = {
-    REST: 'Move every stick and trigger once, let go of everything, then press Enter.',
+    REST: 'Move every stick and trigger once, let go of everything, then press Next.',
     FORWARD: 'Push the stick that should drive FORWARD all the way forward, and let go.',
     LEFT: 'Push the stick that should turn LEFT all the way to the left, and let go.',
     'dead_man': 'Press the button that must be held for anything to move (dead-man button), or '
-                'Enter for none.',
-    'turbo': 'Press the button to be held for full speed (half speed without it), or Enter for '
-             'none.',
-    'stop_all': 'Press the button that stops all robots, or Enter for none.',
-    'next_robot': 'Press the button that selects the next robot, or Enter for none.',
-    'previous_robot': 'Press the button that selects the previous robot, or Enter for none.',
-    'select_all': 'Press the button that selects all robots, or Enter for none.',
+                'choose None.',
+    'turbo': 'Press the button to be held for full speed (half speed without it), or choose None.',
+    'stop_all': 'Press the button that stops all robots, or choose None.',
+    'next_robot': 'Press the button that selects the next robot, or choose None.',
+    'previous_robot': 'Press the button that selects the previous robot, or choose None.',
+    'select_all': 'Press the button that selects all robots, or choose None.',
     DONE: 'Done.',
 }
 
@@ -97,7 +96,7 @@ class Calibration:
         return dict(self._buttons)
 
     def confirm(self) -> None:
-        """Handle Enter: at REST everything is released; at a button the pad has none for it."""
+        """Go on: at REST everything is released; at a button the pad has none for it."""
         if self.step == REST:
             self._confirm_rest()
         elif self.step in _BUTTONS and not self._pressed:
@@ -170,8 +169,8 @@ class Calibration:
             self._again('Buttons {} were pressed together: only one, please.'.format(
                 ' and '.join(map(str, sorted(self._pressed)))))
         elif button in self._buttons.values():
-            self._again('Button {} has a meaning already: another one, please, or Enter.'.format(
-                button))
+            self._again('Button {} has a meaning already: another one, please, or choose '
+                        'None.'.format(button))
         else:
             self._buttons[self.step] = button
             self._next()
@@ -193,7 +192,7 @@ class Calibration:
         drift = max((abs(self._rest[self._axes[step]]) for step, entry in self._entries.items()
                      if 'rest' not in entry), default=0.0)
         dead_zone = round(min(0.3, max(_DEAD_ZONE, 2.0 * drift)), 2)
-        lines = ['# Written by mhri_joy --calibrate for ' + ' '.join(self._device.split()),
+        lines = ['# Written by the page Pad for ' + ' '.join(self._device.split()),
                  'name: ' + self._name,
                  'forward: ' + _flow(self._entries[FORWARD]),
                  'turn: ' + _flow(self._entries[LEFT]),

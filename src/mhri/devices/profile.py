@@ -211,8 +211,8 @@ class Profile:
             return any(buttons)
         if isinstance(self.dead_man, str) or len(buttons) <= self.dead_man:
             raise JoyRefused('too_few_buttons', 'a Joy message with {} buttons; the dead-man '
-                             'button of profile {} is {}. Run mhri_joy --calibrate, or set '
-                             '/mux/dead_man to false'.format(
+                             'button of profile {} is {}. Calibrate the pad on the page Pad, '
+                             'or set /mux/dead_man to false'.format(
                                  len(buttons), self.name, self.dead_man))
         return bool(buttons[self.dead_man])
 

@@ -24,8 +24,7 @@ def find_on_host(facts: Facts) -> List[Finding]:
                  for text in facts.template_errors] + [
                  Finding(WARNING, 'pad_bad', HOST, 'a pad profile is left out: ' + text,
                          'its pad drives with another profile, or not at all',
-                         'fix the file named above, or make a new one: rosrun mhri mhri_joy '
-                         '--calibrate <name>')
+                         'fix the file named above, or calibrate the pad on the page Pad')
                  for text in facts.pad_errors])
     return found
 

@@ -125,7 +125,7 @@ class EnvironmentTest(unittest.TestCase):
         os.makedirs(pads)
         with open(os.path.join(pads, 'attic.yaml'), 'w') as file:
             file.write('name: attic\nforward: {axis: left}\n')
-        self.found('pad_bad', remedy='--calibrate', env={'ROS_HOME': folder})
+        self.found('pad_bad', remedy='page Pad', env={'ROS_HOME': folder})
         self.assertIn('attic.yaml', self.problem)
 
     def test_why_there_is_no_mux(self):

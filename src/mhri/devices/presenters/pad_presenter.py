@@ -16,9 +16,9 @@ from mhri.base.views import VIRTUAL_JOYSTICK
 from mhri.devices.calibration_page import CalibrationPage, READY, SAVING
 from mhri.devices.gui.pad_calibration import PadCalibration
 from mhri.devices.io.child import Child
-from mhri.devices.io.pad_calibration import write_profile
 from mhri.devices.pads import choose_profile
-from mhri.devices.ros.pad_profiles import own_folder, pad_profiles, shipped_names
+from mhri.devices.ros.pad_profiles import (
+    own_folder, pad_profiles, shipped_names, write_profile)
 
 TITLE = 'Pad'
 PAD = 'pad'

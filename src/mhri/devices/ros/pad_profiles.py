@@ -1,13 +1,15 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Reads all pad profiles: the operator's own before the shipped ones."""
+"""Reads all pad profiles, the operator's own before the shipped ones, and writes the former."""
 import os
 from pathlib import Path
 
 import rospkg
 
 from mhri.base.config import ConfigError
+from mhri.base.io.files import whole
 from mhri.devices.pads import load_profiles
+from mhri.devices.profile import parse_profile
 from mhri.graph.ros.resources import read_all, resource_path
 
 
@@ -34,6 +36,27 @@ def read_profiles():
     return profiles, unread + missing + errors + [
         ConfigError(path, 'name', 'is that of a shipped profile; rename the file')
         for path in taken]
+
+
+def write_profile(path, text, replace):
+    """Write a profile completely or not at all, after checking that it can be parsed.
+
+    The folder is created if missing.
+
+    :param replace: whether to replace an existing file
+    :raises FileExistsError: the file exists and must not be replaced
+    :raises OSError: the file cannot be written
+    :raises ConfigError: the text is not a profile
+    """
+    parse_profile(text, path)
+    with whole(path) as part:
+        with open(part, 'w', encoding='utf-8') as stream:
+            stream.write(text)
+        with open(part, encoding='utf-8') as stream:
+            parse_profile(stream.read(), path)
+        # Checked only now: another profile may have been written since the operator was asked.
+        if not replace:
+            os.link(part, path)
 
 
 def pad_profiles():
