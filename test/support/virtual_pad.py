@@ -11,6 +11,7 @@ import ctypes
 import importlib
 import json
 import os
+import re
 import socket
 import subprocess
 import sys
@@ -44,12 +45,16 @@ def _load():
     for name, value in sdl.ENVIRONMENT.items():
         os.environ.setdefault(name, value)
     import pygame  # noqa: F401  (loads the library)
-    library = sdl.load_library()
-    if library is None or not hasattr(library, 'SDL_JoystickAttachVirtualEx'):
+    with open('/proc/self/maps', encoding='utf-8', errors='replace') as maps:
+        # Debian's is libSDL2-2.0.so.0, in a wheel the name has a hash.
+        found = re.search(r'\S*/libSDL2-2[^/_]*\.so[^/ \n]*', maps.read())
+    library = ctypes.CDLL(found.group(0)) if found else None
+    if not hasattr(library, 'SDL_JoystickAttachVirtualEx'):
         return None
     library.SDL_JoystickOpen.restype = ctypes.c_void_p
     for name in ('SDL_JoystickClose', 'SDL_JoystickInstanceID'):
         getattr(library, name).argtypes = [ctypes.c_void_p]
+    library.SDL_JoystickGetDeviceInstanceID.restype = ctypes.c_int32
     library.SDL_JoystickSetVirtualAxis.argtypes = [ctypes.c_void_p, ctypes.c_int, ctypes.c_int16]
     for name in ('SDL_JoystickSetVirtualButton', 'SDL_JoystickSetVirtualHat'):
         getattr(library, name).argtypes = [ctypes.c_void_p, ctypes.c_int, ctypes.c_uint8]
@@ -64,19 +69,35 @@ def missing():
         return str(error)
 
 
+class KernelAxes:
+    """The axes of a virtual pad: {index: value}; one that was never moved is at 0."""
+
+    def __init__(self, axes):
+        self._axes = axes
+
+    def value(self, index):
+        """Return the present value."""
+        return self._axes.get(index, 0.0)
+
+    def close(self):
+        """There is no file."""
+
+
 class Pads:
     """The virtual joysticks of this process; each command is a method."""
 
     def __init__(self):
         self._sdl = None
-        self._pads = {}
+        self._pads, self._axes = {}, {}
         self._kept = []
         self._rumbles = []
 
     def attach(self, name, axes=6, buttons=17, hats=0, vendor=0, product=0):
         """Plug a pad in; return its number."""
         if self._sdl is None:
+            from mhri.devices.io import sdl
             self._sdl = _load()
+            sdl.kernel_axes = self._kernel_axes
         self._sdl.SDL_InitSubSystem(SDL_INIT_JOYSTICK)
         desc = _Desc(1, GAME_CONTROLLER, axes, buttons, hats, vendor, product, 0, 0, 0,
                      name.encode(), Rumble=_Desc.RUMBLE(self._on_rumble))
@@ -86,7 +107,12 @@ class Pads:
         pad = self._sdl.SDL_JoystickOpen(index)
         number = self._sdl.SDL_JoystickInstanceID(pad)
         self._pads[number] = pad
+        self._axes[number] = {}
         return number
+
+    def _kernel_axes(self, joystick, _):
+        """Answer for the kernel, which knows no virtual pad."""
+        return KernelAxes(self._axes[joystick.get_instance_id()])
 
     def _on_rumble(self, _, low, high):
         self._rumbles.append((time.monotonic(), low, high))
@@ -99,6 +125,8 @@ class Pads:
     def set(self, number, axes=None, buttons=None, hats=None):
         """Move axes {index: -1.0 to 1.0}, buttons {index: 0 or 1}, hats {index: bits}."""
         pad = self._pads[number]
+        self._axes[number].update(
+            (int(index), value) for index, value in (axes or {}).items())
         for index, value in (axes or {}).items():
             self._sdl.SDL_JoystickSetVirtualAxis(pad, int(index), int(round(value * FULL)))
         for index, value in (buttons or {}).items():

@@ -51,8 +51,8 @@ def test_pads_and_nothing_else(system):
 def test_where_a_pad_is(system, phys, uniq, where):
     plug(system, 4, PS3, phys, uniq)
     assert [pad.where for pad in event_nodes.find_pads()] == [where]
-    assert event_nodes.where_is('/dev/input/event4') == where
-    assert event_nodes.where_is('/dev/input/event5') == event_nodes.where_is('') == ''
+    assert event_nodes.pad_at('/dev/input/event4').where == where
+    assert event_nodes.pad_at('/dev/input/event5') is event_nodes.pad_at('') is None
 
 
 def test_a_pad_reader_names_the_pad_it_would_open(system):

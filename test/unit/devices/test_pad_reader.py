@@ -1,12 +1,12 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """The reader of the pad over joysticks that are played."""
-import io
 import os
 import sys
 import types
 from unittest import mock
 
+from evdev import AbsInfo, ecodes
 import pytest
 
 from mhri.devices.io import event_nodes, sdl
@@ -20,6 +20,9 @@ STICK = parse_profile('name: generic\nforward: {axis: 1, scale: -1.0}\nturn: {ax
 TRIGGER = parse_profile(
     'name: trigger\nforward: {axis: 2, rest: -1.0, scale: 1.0}\nturn: {axis: 0}\n'
     'match: {names: [Wheel]}\n', 't')
+
+
+PORT = 'usb-0000:00:14.0-{}/input0'
 
 
 class Joystick:
@@ -64,8 +67,6 @@ class Joysticks:
 
     def look(self):
         return [joystick.info for joystick in self.plugged]
-
-    connected = look
 
     def open(self, info):
         return self.plugged[info.index]
@@ -208,7 +209,7 @@ class OldPygame:
 def old_joystick(files=()):
     pygame = OldPygame()
     info = PadInfo(0, 'Old')
-    return pygame, sdl.Joystick(pygame, None, OldPygame.Stick(), info, list(files))
+    return pygame, sdl.Joystick(pygame, OldPygame.Stick(), info, dict.fromkeys(files, '/dev/null'))
 
 
 def test_sdl_1_2_axes_are_known_from_their_first_event_on():
@@ -258,27 +259,10 @@ def test_a_file_with_more_to_tell_than_sdl_reads_is_no_busy_loop(monkeypatch):
         os.close(writing)
 
 
-@pytest.mark.parametrize('line, good', [
-    ('7f00-7f01 r-xp 0 fe:00 1 /usr/lib/x86_64-linux-gnu/libSDL2-2.0.so.0.2600.5', True),
-    ('7f00-7f01 r-xp 0 fe:00 1 /x/pygame.libs/libSDL2-2-2e17a25b.0.so.0.18.2', True),
-    ('7f00-7f01 r-xp 0 fe:00 1 /x/pygame.libs/libSDL2-2.0-f2f6b3c4.so.0.3000.3', True),
-    ('7f00-7f01 r-xp 0 fe:00 1 /usr/lib/x86_64-linux-gnu/libSDL2_mixer-2.0.so.0.600.2', False),
-    ('7f00-7f01 r-xp 0 fe:00 1 /usr/lib/x86_64-linux-gnu/libSDL-1.2.so.0.11.4', False)])
-def test_the_library_is_told_from_its_relatives(line, good, monkeypatch):
-    loaded = []
-
-    def refuse(path):
-        loaded.append(path)
-        raise OSError
-    monkeypatch.setattr(sdl, 'open', lambda *_, **__: io.StringIO(
-        'first line\n' + line + '\nlast line\n'), raising=False)
-    monkeypatch.setattr(sdl.ctypes, 'CDLL', refuse)
-    assert sdl.load_library() is None
-    assert loaded == [line.split()[-1]] * good
-
-
-def test_all_pads_are_named_and_the_chosen_one_is_opened():
-    reader, _ = make('PS3 Pad', 'Pad', 'Pad Motion Sensors')
+def test_all_pads_are_named_and_the_chosen_one_is_opened(system):
+    reader, _ = make('PS3 Pad', 'Pad')
+    for number, name in enumerate(('PS3 Pad', 'Pad', 'Pad Motion Sensors')):
+        plug(system, number, (name, *PS3[1:]))
     reader.open()
     assert reader.available() == ('PS3 Pad', 'Pad')
     # A part of the other's name, and the name of one that is there.
@@ -289,13 +273,15 @@ def test_all_pads_are_named_and_the_chosen_one_is_opened():
     assert reader.open().startswith('Pad ')
 
 
-def test_a_pad_keeps_its_place_and_changes_its_name_with_its_twin():
+def test_a_pad_keeps_its_place_and_changes_its_name_with_its_twin(system):
     reader, plugged = make('Pad')
     plugged[0].info = PadInfo(0, 'Pad', where='USB 1')
     twin = Joystick(PadInfo(1, 'Pad', where='USB 2'))
+    plug(system, 3, ('Pad', *PS3[1:]), PORT.format(1))
     assert reader.open().startswith('Pad ')
     assert (reader.available(), reader.name) == (('Pad',), 'Pad')
     plugged.append(twin)
+    plug(system, 4, ('Pad', *PS3[1:]), PORT.format(2))
     for _ in range(3000):  # the clock goes on with each look
         reader.available()
     assert (reader.available(), reader.name) == (('Pad, USB 1', 'Pad, USB 2'), 'Pad, USB 1')
@@ -306,26 +292,127 @@ def test_a_pad_keeps_its_place_and_changes_its_name_with_its_twin():
     assert reader.open().startswith('Pad, USB 2 ')
 
 
-@pytest.mark.parametrize('paths, places', [
-    ([b'/dev/input/event9', b'/dev/input/event4', None], ['USB 9', 'USB 4', 'number 9']),
-    (None, ['USB 4', 'USB 9', 'number 9'])])
-def test_where_a_joystick_of_sdl_is(paths, places, tmp_path, monkeypatch):
+class Pygame:
+    """pygame over joysticks that have files: a list of (name, path of its file or None)."""
+
+    JOYAXISMOTION, JOYDEVICEADDED, JOYDEVICEREMOVED = 7, 8, 9
+    error = RuntimeError
+
+    def __init__(self, *plugged):
+        self.plugged = plugged
+        self.files, self.opened, self.axis = {}, [], 0.0
+        self.display = mock.MagicMock()
+        self.event = mock.MagicMock(**{'get.return_value': []})
+        self.joystick = mock.MagicMock(
+            Joystick=self._open, **{'get_count.side_effect': lambda: len(self.plugged)})
+
+    def get_sdl_version(self):
+        return 2, 0, 10
+
+    def _open(self, index):
+        name, path = self.plugged[index]
+        if path == 'refused':
+            raise RuntimeError('refused')
+        self.opened.append(name)
+        number = 10 * (index + 1)
+        if path:
+            self.files[number] = path
+        return mock.MagicMock(**{
+            'get_name.return_value': name, 'get_guid.return_value': 'of SDL',
+            'get_instance_id.return_value': index + 6, 'get_numaxes.return_value': 2,
+            'get_axis.side_effect': lambda _: self.axis, 'get_numbuttons.return_value': 0,
+            'get_numhats.return_value': 0,
+            'quit.side_effect': lambda: self.files.pop(number, None)})
+
+
+@pytest.fixture
+def system(tmp_path, monkeypatch):
+    """A folder that takes the place of /sys/class/input."""
     monkeypatch.setattr(event_nodes, 'SYS_INPUT', str(tmp_path))
+    return tmp_path
+
+
+@pytest.fixture
+def joysticks(system, monkeypatch):
+    """Return a function that returns the joysticks of a :class:`Pygame`."""
+    def install(pygame):
+        monkeypatch.setitem(sys.modules, 'pygame', pygame)
+        monkeypatch.setattr(sdl, 'device_files', lambda: dict(pygame.files))
+        monkeypatch.setattr(sdl.os, 'environ', {})
+        return sdl.Joysticks()
+    return install
+
+
+def test_a_joystick_is_what_the_kernel_calls_it_by_the_file_that_it_has(system, joysticks):
     for number in (9, 4):
-        plug(tmp_path, number, PS3, 'usb-0000:00:14.0-{}/input0'.format(number))
-    names = [PS3[0], PS3[0], 'Virtual']
-    library = types.SimpleNamespace(
-        SDL_JoystickNameForIndex=lambda index: names[index].encode(),
-        SDL_JoystickGetDeviceGUID=lambda _: types.SimpleNamespace(data=bytes(16)),
-        SDL_JoystickGetDeviceInstanceID=lambda index: index + 6)
-    if paths is not None:
-        library.SDL_JoystickPathForIndex = lambda index: paths[index]
-    pygame = mock.MagicMock(**{'get_sdl_version.return_value': (2, 0, 0),
-                               'joystick.get_count.return_value': len(names)})
-    monkeypatch.setitem(sys.modules, 'pygame', pygame)
-    monkeypatch.setattr(sdl, 'load_library', lambda: library)
-    monkeypatch.setattr(sdl.os, 'environ', {})
-    assert [pad.where for pad in sdl.Joysticks().look()] == places
+        plug(system, number, PS3, PORT.format(number))
+    pygame = Pygame(('PS3 Controller', '/dev/input/event9'), ('PS3 Controller', 'refused'),
+                    ('PS3 Controller', '/dev/input/event4'), ('Virtual', None))
+    assert [tuple(vars(pad).values())[:4] for pad in joysticks(pygame).look()] == [
+        (0, PS3[0], 'of SDL', 'USB 9'), (2, PS3[0], 'of SDL', 'USB 4'),
+        (3, 'Virtual', 'of SDL', 'number 10')]
+    assert not pygame.files, 'all closed again'
+
+
+def test_joysticks_are_opened_for_a_look_only_after_a_change(joysticks):
+    pygame = Pygame(('One', None), ('Two', None))
+    found = joysticks(pygame)
+    for _ in range(3):
+        found.look()
+    assert pygame.opened == ['One', 'Two']
+    pygame.plugged = pygame.plugged[1:]
+    pygame.event.get.return_value = [object()]
+    assert [pad.name for pad in found.look()] == ['Two']
+
+
+def test_what_took_the_place_of_the_chosen_joystick_is_not_opened(joysticks):
+    pygame = Pygame(('One', None))
+    found = joysticks(pygame)
+    info, = found.look()
+    pygame.plugged = (('Other', None),)
+    with pytest.raises(DeviceAbsent, match='One was unplugged'):
+        found.open(info)
+
+
+class Kernel:
+    """An event node with two axes, a hat and a key; ``values`` is what its axes say."""
+
+    values = {ecodes.ABS_X: 255, ecodes.ABS_Z: 0}
+
+    def __init__(self, path):
+        if not path.startswith('/dev/input/event'):
+            raise OSError
+
+    def capabilities(self):
+        return {ecodes.EV_KEY: [ecodes.BTN_A], ecodes.EV_ABS: [
+            (code, None) for code in (ecodes.ABS_HAT0X, ecodes.ABS_Z, ecodes.ABS_X)]}
+
+    def absinfo(self, code):
+        if not self.values:
+            raise OSError
+        return AbsInfo(self.values[code], 0, 255, 0, 0, 0)
+
+    def close(self):
+        self.values = {}
+
+
+def test_an_axis_that_sdl_has_not_reported_is_where_the_kernel_has_it(joysticks, monkeypatch):
+    """A trigger rests at -1, and a pad that was pushed before it was opened is pushed."""
+    monkeypatch.setattr(sdl.evdev, 'InputDevice', Kernel)
+    pygame = Pygame(('Pad', '/dev/input/event3'), ('Node of joydev', '/dev/input/js0'))
+    found = joysticks(pygame)
+    pad, old = found.look()
+    monkeypatch.setattr(sdl.os, 'fstat', lambda _: types.SimpleNamespace(st_nlink=1))
+    joystick = found.open(pad)
+    assert joystick.state()[0] == (1.0, -1.0)
+    pygame.event.get.return_value = [types.SimpleNamespace(type=7, instance_id=6, axis=0)]
+    pygame.axis = 0.25
+    assert joystick.state()[0] == (0.25, -1.0)
+    monkeypatch.setattr(Kernel, 'values', {})
+    with pytest.raises(DeviceLost):
+        joystick.state()
+    joystick.close()
+    assert found.open(old).state()[0] == (None, None)
 
 
 def test_joysticks_without_pygame_name_the_remedy(monkeypatch):

@@ -76,17 +76,20 @@ def find_pads():
     folders = [folder for _, folder in _folders()
                if _has_keys(_line(folder, 'capabilities/key'), *_PAD_KEYS)
                or glob.glob(os.path.join(glob.escape(folder), 'js[0-9]*'))]
-    return [PadInfo(index, _line(folder, 'name'), _guid(folder), _where(folder))
-            for index, folder in enumerate(folders)]
+    return [_pad(index, folder) for index, folder in enumerate(folders)]
 
 
-def where_is(path):
-    """Return the port of the device with a file like ``/dev/input/event7``.
+def pad_at(path):
+    """Return the :class:`mhri.devices.pads.PadInfo` of a file like ``/dev/input/event7``.
 
-    :returns: the same as ``where`` of :func:`find_pads`; '' if there is no such device
+    :returns: the same as in :func:`find_pads`, with index 0; None if there is no such device
     """
     folder = os.path.join(SYS_INPUT, os.path.basename(path), 'device')
-    return _where(folder) if os.path.isdir(folder) else ''
+    return _pad(0, folder) if os.path.isdir(folder) else None
+
+
+def _pad(index, folder):
+    return PadInfo(index, _line(folder, 'name'), _guid(folder), _where(folder))
 
 
 def _where(folder):

@@ -78,8 +78,7 @@ class PadReader(Reader):
         now = self._clock()
         if now >= self._look_at:
             self._look_at = now + LOOK_S
-            pads = with_labels(only_pads(
-                find_pads() if self._pad is None else self._joysticks.connected()))
+            pads = with_labels(only_pads(find_pads()))
             self._available = tuple(pad.label for pad in pads)
             if self._pad is not None:
                 self._update_name(pads)

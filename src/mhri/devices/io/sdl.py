@@ -2,27 +2,26 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Joysticks by SDL, through pygame 1.9.6 (SDL 1.2) and 2.x (SDL 2).
 
-pygame does not provide whether an axis has reported yet, whether a pad is still attached, or its
-port, and provides name and GUID only for an opened pad. If it runs on SDL 2, this module therefore
-also calls that library through ctypes. Otherwise an axis is known from its first event on, and a
-pad is gone when its file in /dev/input is.
+The kernel knows what pygame does not say: a joystick's name, GUID and port by the file that SDL
+opens for it, and the value of an axis that SDL has not reported yet. Without a file (a virtual
+joystick) an axis is known from its first event on.
 """
-import ctypes
 from dataclasses import replace
 import os
 import re
 import select
 import time
 
-from mhri.devices.io.event_nodes import find_pads, where_is
+import evdev
+from evdev import ecodes
+
+from mhri.devices.io.event_nodes import pad_at
 from mhri.devices.io.reader import DeviceAbsent, DeviceLost
 from mhri.devices.pads import PadInfo
 
 # Polling period of a pad without a file to wait for (a virtual one) [s].
 POLL_S = 0.004
-_DEVICE_FILE = re.compile(r'/dev/(input/|hidraw)')
-# Not SDL2_image, _mixer, _ttf; Debian's is libSDL2-2.0.so.0, in a wheel the name has a hash.
-_LIBRARY = re.compile(r'\S*/libSDL2-2[^/_]*\.so[^/ \n]*')
+_DEVICE_FILE = re.compile(r'/dev/input/')
 
 ENVIRONMENT = {
     'SDL_VIDEODRIVER': 'dummy',                   # events without a window
@@ -33,39 +32,6 @@ ENVIRONMENT = {
     # differently in each version, and always keep its file open.
     'SDL_JOYSTICK_HIDAPI': '0',
 }
-
-
-class _Guid(ctypes.Structure):
-    _fields_ = [('data', ctypes.c_uint8 * 16)]
-
-
-def load_library():
-    """Return the SDL 2 library loaded by this process, with its types declared, or None."""
-    try:
-        with open('/proc/self/maps', encoding='utf-8', errors='replace') as maps:
-            found = _LIBRARY.search(maps.read())
-        library = ctypes.CDLL(found.group(0)) if found else None
-    except OSError:
-        return None
-    if library is None:
-        return None
-    pointer, number = ctypes.c_void_p, ctypes.c_int
-    try:
-        for function, result, arguments in (
-                (library.SDL_JoystickFromInstanceID, pointer, [ctypes.c_int32]),
-                (library.SDL_JoystickGetAttached, number, [pointer]),
-                (library.SDL_JoystickGetAxisInitialState, number,
-                 [pointer, number, ctypes.POINTER(ctypes.c_int16)]),
-                (library.SDL_JoystickNameForIndex, ctypes.c_char_p, [number]),
-                (library.SDL_JoystickGetDeviceInstanceID, ctypes.c_int32, [number]),
-                (library.SDL_JoystickGetDeviceGUID, _Guid, [number])):
-            function.restype, function.argtypes = result, arguments
-    except AttributeError:  # an SDL older than 2.0.6
-        return None
-    if hasattr(library, 'SDL_JoystickPathForIndex'):  # from 2.24 on
-        library.SDL_JoystickPathForIndex.restype = ctypes.c_char_p
-        library.SDL_JoystickPathForIndex.argtypes = [number]
-    return library
 
 
 def device_files():
@@ -89,7 +55,8 @@ class Joysticks:
 
     def __init__(self):
         self._pygame = None
-        self._library = None
+        # None while it may have changed.
+        self._listed = None
 
     def _start(self):
         """Start SDL.
@@ -110,19 +77,14 @@ class Joysticks:
             pygame.joystick.init()
         except pygame.error as error:
             raise DeviceAbsent('SDL does not start: {}'.format(error))
-        if pygame.get_sdl_version()[0] >= 2:
-            self._library = load_library()
-        wanted = [pygame.JOYDEVICEADDED, pygame.JOYDEVICEREMOVED] if hasattr(
-            pygame, 'JOYDEVICEREMOVED') else []
-        if self._library is None:
-            wanted.append(pygame.JOYAXISMOTION)
         pygame.event.set_blocked(None)
-        if wanted:
-            pygame.event.set_allowed(wanted)
+        pygame.event.set_allowed([pygame.JOYAXISMOTION] + [
+            getattr(pygame, name) for name in ('JOYDEVICEADDED', 'JOYDEVICEREMOVED')
+            if hasattr(pygame, name)])
         self._pygame = pygame
 
     def look(self):
-        """Return the :class:`PadInfo` of every connected joystick.
+        """Return the :class:`PadInfo` of every connected joystick, while none is open.
 
         :raises DeviceAbsent: SDL cannot be used at all
         """
@@ -133,63 +95,98 @@ class Joysticks:
             # SDL 1.2 lists joysticks only once, at its start.
             pygame.joystick.quit()
             pygame.joystick.init()
-        pygame.event.pump()
-        pygame.event.get()
-        return self._list()
-
-    def connected(self):
-        """Return the result of :meth:`look` without updating SDL; [] if SDL is too old."""
-        if self._library is None:
-            return []
-        return self._list()
+            self._listed = None
+        if pygame.event.get() or self._listed is None:
+            self._listed = self._list()
+        return self._listed
 
     def _list(self):
-        """Return all joysticks with their ports."""
-        pads = [replace(pad, where=self._where(pad.index)) for pad in map(
-            self._info, range(self._pygame.joystick.get_count()))]
-        if all(pad.where for pad in pads):
-            return pads
-        # An SDL version without their files lists them in the kernel's order.
-        kernel = find_pads()
-        places = {pad.name: iter([other.where for other in kernel if other.name == pad.name])
-                  for pad in pads}
-        return [replace(pad, where=pad.where or next(places[pad.name], '')
-                        or self._number(pad.index)) for pad in pads]
+        """Return all joysticks that can be opened: pygame describes only an open one."""
+        found = []
+        for index in range(self._pygame.joystick.get_count()):
+            try:
+                joystick, files = self._opened(index)
+            except self._pygame.error:  # unplugged meanwhile
+                continue
+            found.append(_info(index, joystick, files))
+            joystick.quit()
+        return found
 
-    def _where(self, index):
-        """Return the port of a joystick, '' if its file is unknown."""
-        if not hasattr(self._library, 'SDL_JoystickPathForIndex'):
-            return ''
-        return where_is((self._library.SDL_JoystickPathForIndex(index) or b'').decode())
-
-    def _number(self, index):
-        """Return the number of a joystick while it is connected, '' if unknown."""
-        return 'number {}'.format(self._library.SDL_JoystickGetDeviceInstanceID(index) + 1) \
-            if self._library else ''
-
-    def _info(self, index):
-        if self._library is not None:
-            name = self._library.SDL_JoystickNameForIndex(index) or b''
-            guid = bytes(self._library.SDL_JoystickGetDeviceGUID(index).data).hex()
-            return PadInfo(index, name.decode('utf-8', 'replace'), guid)
+    def _opened(self, index):
+        """Return (pygame's joystick, opened; {file descriptor: path} of its files)."""
+        before = device_files()
         joystick = self._pygame.joystick.Joystick(index)
-        guid = joystick.get_guid() if hasattr(joystick, 'get_guid') else ''
-        return PadInfo(index, joystick.get_name(), guid)
+        joystick.init()
+        return joystick, {number: path for number, path in device_files().items()
+                          if number not in before}
 
     def open(self, info):
         """Open a joystick of the last :meth:`look`; return its :class:`Joystick`.
 
         :raises DeviceAbsent: it cannot be opened
         """
-        before = device_files()
+        self._listed = None
         try:
-            joystick = self._pygame.joystick.Joystick(info.index)
-            joystick.init()
+            joystick, files = self._opened(info.index)
         except self._pygame.error as error:
             raise DeviceAbsent('{} cannot be opened: {}; is it yours to read (group input)?'.format(
                 info.name, error))
-        files = [number for number in device_files() if number not in before]
-        return Joystick(self._pygame, self._library, joystick, info, files)
+        if _info(info.index, joystick, files).full_name != info.full_name:
+            joystick.quit()
+            raise DeviceAbsent('{} was unplugged'.format(info.name))
+        return Joystick(self._pygame, joystick, info, files)
+
+
+def _info(index, joystick, files):
+    """Return the :class:`PadInfo` of an open joystick of pygame."""
+    guid = joystick.get_guid() if hasattr(joystick, 'get_guid') else ''
+    pad = next(filter(None, map(pad_at, files.values())), None)
+    if pad is not None:
+        return replace(pad, index=index, guid=guid or pad.guid)
+    number = 'number {}'.format(joystick.get_instance_id() + 1) if hasattr(
+        joystick, 'get_instance_id') else ''
+    return PadInfo(index, joystick.get_name(), guid, number)
+
+
+class KernelAxes:
+    """The axes of an event node but for hats, in SDL's order: that of their codes.
+
+    :raises OSError: the file is no event node, or cannot be read
+    """
+
+    def __init__(self, path):
+        self._device = evdev.InputDevice(path)
+        self.codes = sorted(
+            code for code, _ in self._device.capabilities().get(ecodes.EV_ABS, ())
+            if not ecodes.ABS_HAT0X <= code <= ecodes.ABS_HAT3Y)
+
+    def value(self, index):
+        """Return the present value of an axis in [-1, 1].
+
+        :raises DeviceLost: the device is gone
+        """
+        try:
+            info = self._device.absinfo(self.codes[index])
+        except OSError:
+            raise DeviceLost('it was unplugged or switched off')
+        return (2.0 * info.value - info.min - info.max) / max(1, info.max - info.min)
+
+    def close(self):
+        """Close the file."""
+        self._device.close()
+
+
+def kernel_axes(joystick, files):
+    """Return the :class:`KernelAxes` of an open joystick of pygame, None if its files have none."""
+    for path in files.values():
+        try:
+            axes = KernelAxes(path)
+        except OSError:  # a joydev node, which reports all its axes on opening
+            continue
+        if len(axes.codes) == joystick.get_numaxes():
+            return axes
+        axes.close()
+    return None
 
 
 class Joystick:
@@ -197,11 +194,12 @@ class Joystick:
 
     A hat appears twice: as two axes after the device's own (right +1, down +1, as in the kernel)
     and as four buttons after the device's own (up, right, down, left).
+
+    :param files: {file descriptor: path} that SDL has opened for it
     """
 
-    def __init__(self, pygame, library, joystick, info, files):
+    def __init__(self, pygame, joystick, info, files):
         self._pygame = pygame
-        self._library = library
         self._joystick = joystick
         self.info = info
         self._axes = range(joystick.get_numaxes())
@@ -209,10 +207,9 @@ class Joystick:
         self._hats = range(joystick.get_numhats())
         self._instance = joystick.get_instance_id() if hasattr(
             joystick, 'get_instance_id') else None
-        # Valid while the joystick is open, until close().
-        self._pointer = library.SDL_JoystickFromInstanceID(self._instance) if library else None
-        self._known = set()
-        self._files = files
+        self._reported = set()
+        self._kernel = kernel_axes(joystick, files)
+        self._files = list(files)
         self._poll = select.poll()
         for number in files:
             self._poll.register(number, select.POLLIN)
@@ -239,16 +236,9 @@ class Joystick:
 
     def _axis(self, index):
         """Return the value of one axis, or None; SDL's minimum is a little below -1."""
-        if index not in self._known and not self._is_known(index):
-            return None
-        self._known.add(index)
-        return max(-1.0, min(1.0, self._joystick.get_axis(index)))
-
-    def _is_known(self, index):
-        """Return whether an axis has reported, without SDL 2 by its first event."""
-        value = ctypes.c_int16()
-        return bool(self._pointer) and bool(self._library.SDL_JoystickGetAxisInitialState(
-            self._pointer, index, ctypes.byref(value)))
+        if index in self._reported:
+            return max(-1.0, min(1.0, self._joystick.get_axis(index)))
+        return self._kernel.value(index) if self._kernel else None
 
     def _pump(self):
         """Process the pending events of SDL.
@@ -258,13 +248,11 @@ class Joystick:
         pygame = self._pygame
         for event in pygame.event.get():
             if event.type == pygame.JOYAXISMOTION and self._is_mine(event):
-                self._known.add(event.axis)
+                self._reported.add(event.axis)
             elif event.type == getattr(pygame, 'JOYDEVICEREMOVED', None) and self._is_mine(event):
                 raise DeviceLost('it was unplugged or switched off')
-        if self._pointer and not self._library.SDL_JoystickGetAttached(self._pointer):
-            raise DeviceLost('it was unplugged or switched off')
         # SDL 1.2 does not report a removal.
-        if not self._library and any(os.fstat(number).st_nlink == 0 for number in self._files):
+        if any(os.fstat(number).st_nlink == 0 for number in self._files):
             raise DeviceLost('its file in /dev/input is gone')
 
     def _is_mine(self, event):
@@ -295,5 +283,6 @@ class Joystick:
 
     def close(self):
         """Close the device; must be called once."""
-        self._pointer = None
+        if self._kernel is not None:
+            self._kernel.close()
         self._joystick.quit()
