@@ -186,7 +186,9 @@ def _cepstra(sounds):
             decoder.end_utt()
         for name in sorted(os.listdir(logs)):
             with open(os.path.join(logs, name), 'rb') as stream:
-                # The file starts with a count.
-                values = np.frombuffer(stream.read()[4:], dtype='<f4')
+                data = stream.read()
+            # It starts with the number of values, in its byte order: big-endian since 5.1.
+            order = '<' if int.from_bytes(data[:4], 'little') == len(data) // 4 - 1 else '>'
+            values = np.frombuffer(data[4:], dtype=order + 'f4')
             found.append(values.reshape(-1, _CEPSTRA).astype(float))
     return found
