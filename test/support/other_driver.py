@@ -5,8 +5,6 @@
 
 ``other_driver.py TOPIC HZ M_PER_S [__name:=NAME]``. It knows nothing of stops and cancels.
 """
-import sys
-
 from geometry_msgs.msg import Twist
 import rospy
 
@@ -17,13 +15,10 @@ def main():
     publisher = rospy.Publisher(topic, Twist, queue_size=1)
     message = Twist()
     message.linear.x = float(linear)
-    rate = rospy.Rate(float(rate_hz))
-    while not rospy.is_shutdown():
-        publisher.publish(message)
-        try:
-            rate.sleep()
-        except rospy.ROSInterruptException:
-            sys.exit()
+    # Not on the main thread: rospy handles SIGTERM there, and closing a connection in the middle of
+    # publish() waits for ever for the lock that publish() holds (rospy's QueuedConnection).
+    rospy.Timer(rospy.Duration(1.0 / float(rate_hz)), lambda _: publisher.publish(message))
+    rospy.spin()
 
 
 if __name__ == '__main__':
