@@ -20,11 +20,12 @@ if __name__ == '__main__' and not os.environ.get('DISPLAY'):
 from python_qt_binding.QtWidgets import QApplication  # noqa: E402
 
 from mhri.base.gui import theme  # noqa: E402
+from mhri.base.io.pages import page  # noqa: E402
 from mhri.doctor.facts import FINE, UNRESOLVED  # noqa: E402
 from mhri.doctor.gui.doctor_page import DoctorPage  # noqa: E402
 from mhri.doctor.judgement import diagnose  # noqa: E402
 from mhri.drill.gui.faults_page import FaultsPage  # noqa: E402
-from mhri.drill.page import page_of  # noqa: E402
+from mhri.drill.page import TEMPLATE, values_of  # noqa: E402
 from mhri.drill.rehearsal import Rehearsal  # noqa: E402
 from mhri.graph.ros.resources import resource_path  # noqa: E402
 from mhri.map.gui.map_pane import MapPane  # noqa: E402
@@ -72,7 +73,8 @@ def draw_drill(name, path):
     """Draw the way of the scripted operator through a drill, with a slow link."""
     scenario, plan, bodies = drill(name)
     result = Rehearsal(scenario, plan, bodies, delay_s=0.2).run()
-    picture = re.search('<svg.*</svg>', page_of(result, plan.walls.tolist(), scenario.targets))
+    picture = re.search('<svg.*</svg>', page(resource_path('pages'), TEMPLATE, values_of(
+        result, plan.walls.tolist(), scenario.targets)), re.DOTALL)
     with open(path, 'w', encoding='utf-8') as file:
         file.write(picture.group().replace('<svg', '<svg xmlns="http://www.w3.org/2000/svg"')
                    + '\n')

@@ -14,8 +14,9 @@ import time
 import rospy
 
 from mhri.base.config import ConfigError, short
+from mhri.base.io.pages import page
 from mhri.base.robot_types import resolve_robot_type
-from mhri.drill.page import page_of
+from mhri.drill.page import TEMPLATE, values_of
 from mhri.drill.referee import ALL_FOUND, Referee, TruePose
 from mhri.drill.rehearsal import LIMITS, Rehearsal
 from mhri.drill.results import compared, lines_of, result_of
@@ -24,7 +25,7 @@ from mhri.drill.ros.scripted_hands import ScriptedHands
 from mhri.drill.ros.state import DrillPublisher
 from mhri.drill.ros.watch import FaultCaller, OperatorWatch
 from mhri.drill.scenario import on_links
-from mhri.graph.ros.resources import read_text, robot_types
+from mhri.graph.ros.resources import read_text, resource_path, robot_types
 from mhri.graph.ros.shutdown import init_node
 from mhri.msg import DrillState
 from mhri.nodes.sim_robot import body_type, building_key
@@ -182,7 +183,8 @@ def keep(drill, result, rehearsed=False):
     print('\n'.join(lines_of(result, before)), flush=True)
     try:
         path = write(folder_of(drill.scenario, rehearsed), result,
-                     page_of(result, drill.plan.walls.tolist(), drill.scenario.targets, before))
+                     page(resource_path('pages'), TEMPLATE, values_of(
+                         result, drill.plan.walls.tolist(), drill.scenario.targets, before)))
         print('written: {}'.format(path), flush=True)
         return str(path)
     except OSError as error:

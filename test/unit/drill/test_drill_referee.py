@@ -8,11 +8,14 @@ import numpy as np
 import pytest
 
 from mhri.base.config import ConfigError
-from mhri.drill.page import page_of
+from mhri.base.io.pages import page
+from mhri.drill.page import TEMPLATE, values_of
 from mhri.drill.referee import ALL_FOUND, Doing, Referee, TIME_UP, TruePose
 from mhri.drill.results import as_yaml, compared, lines_of, result_of
 from mhri.drill.scenario import Scenario, Target
 from mhri.session.drill_results import read_result
+
+from support.paths import RESOURCE
 
 WALLS = np.array([[2.0, -1.0, 2.0, 1.0]])
 DRIVES = Doing(('bot1',), True)
@@ -161,8 +164,9 @@ def test_what_is_written_can_be_read_and_compared():
     nothing = Game().result()
     assert nothing['fan_out'] is None and nothing['ended'] == 'left'
     assert read_result(as_yaml(nothing), 'drill.yaml')['fan_out'] is None
-    page = page_of(dict(result, title='<Small>'), WALLS.tolist(), [AHEAD], [result])
-    assert '&lt;Small&gt;' in page and '<svg' in page and 'src=' not in page and 'href=' not in page
+    text = page(str(RESOURCE / 'pages'), TEMPLATE, values_of(
+        dict(result, title='<Small>'), WALLS.tolist(), [AHEAD], [result]))
+    assert '&lt;Small&gt;' in text and '<svg' in text and 'src=' not in text and 'href=' not in text
 
 
 @pytest.mark.parametrize('text', ['format: 2', 'time_s: 3', '['])

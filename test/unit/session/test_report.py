@@ -1,23 +1,28 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """What a report of a session says: distances, silences, stops, map, film."""
+from dataclasses import replace
 import math
 
 import numpy as np
 import pytest
 
 from mhri.base.geometry import Pose
+from mhri.base.io.pages import page
 from mhri.base.views import FlagView
 from mhri.map.grid import Grid
 from mhri.recording.folder import NotASession, SessionEvent, SessionInfo
 from mhri.robots.link import Motion
 from mhri.session.film import Camera, cameras_of, frame_count, frame_of, frame_size, Headings, Tile
 from mhri.session.flags import place_of
-from mhri.session.report import is_still, report_of, ROBOT_HEADS, spots_of
-from mhri.session.report_page import page_of
+from mhri.session.report import (
+    is_still, MAX_EVENTS, MAX_MARKS, MAX_STOPS, report_of, ROBOT_HEADS, spots_of)
+from mhri.session.report_page import TEMPLATE, values_of
 from mhri.session.sheet import drawn, ground, sheet_of
 from mhri.session.survey import link_words, RobotSurvey
 from mhri.session.timeline import read_time_line, Span
+
+from support.paths import RESOURCE
 
 START = 1700000000.0
 
@@ -138,6 +143,11 @@ def report(events, robots=None, surveys=None, length_s=60.0):
                      surveys)
 
 
+def report_page(*values):
+    """Return the page of a report."""
+    return page(str(RESOURCE / 'pages'), TEMPLATE, values_of(*values))
+
+
 def test_sensors_beyond_their_limits():
     """Each with its robot, from the first word on; one that was not back by the end."""
     def said(at_s, what, robot='bot1', key='gas'):
@@ -148,8 +158,8 @@ def test_sensors_beyond_their_limits():
     assert [(row.span.robot, round(row.span.begin_s), round(row.span.end_s), row.over)
             for row in found.sensors] == [
         ('bot1', 5, 9, True), ('bot1', 6, 60, False), ('bot2', 10, 60, False)]
-    assert page_of(found, '', {}).count('<td>gas 60 ppm</td>') == 3
-    assert page_of(found, '', {}).count('until the end') == 2
+    assert report_page(found, '', {}).count('<td>gas 60 ppm</td>') == 3
+    assert report_page(found, '', {}).count('until the end') == 2
 
 
 def test_text_of_the_session_is_no_markup():
@@ -160,8 +170,30 @@ def test_text_of_the_session_is_no_markup():
               line(3.1, 'stop', nasty, 'error', nasty, code='proof.doubtful'),
               line(4.0, nasty, nasty, nasty, nasty)]
     found = report(events, {nasty: {'number': 1, 'type': nasty, 'model': nasty}})
-    page = page_of(found, '', {}, nasty)
+    page = report_page(found, '', {}, nasty)
     assert nasty not in page and '<script' not in page and page.count('&lt;script&gt;') > 8
+
+
+def test_a_page_is_of_bounded_size_and_says_what_it_leaves_out():
+    names = ['stills/a_bot1.jpg', 'stills/b_bot1.jpg']
+    events = [line(0.001 * number, 'mark', 'mark', robot='bot1', id='m%d' % number,
+                   poses={'bot1': [1.0, 2.0, 0.0, 'map']}, stills=names if number else [])
+              for number in range(MAX_MARKS + 1)]
+    events += [line(1.0 + number / 10, 'stop', 'STOP ALL', stop_all=not number % 2)
+               for number in range(2 * MAX_STOPS + 2)]
+    events += [line(2.0, 'link', 'x', 'error', 'bot1')] * (MAX_EVENTS + 1) + [
+        line(3.0, 'still', 'still', stills=names)]
+    found = replace(report(events), drills=(('maze', [('time', '3 s')]),), problems=('a bag',))
+    text = report_page(found, 'data:map', {names[0]: 'data:still'})
+    assert text.count('class="mark"') == MAX_MARKS and text.count('src="data:map"') == 1
+    # Each mark but the first, and once by itself; the other still is there for nobody.
+    assert text.count('src="data:still"') == MAX_MARKS
+    assert text.count('one still is not shown') == MAX_MARKS - 1
+    assert text.count('<h3>STOP ALL') == MAX_STOPS and text.count('TROUBLE: x') == MAX_EVENTS
+    for said in ('<td>3 s</td>', '<li>a bag</li>', *(
+            'irst {} of {} '.format(most, most + 1) for most in (MAX_MARKS, MAX_STOPS)),
+            '{} of {} lines'.format(MAX_EVENTS, len(found.line.events))):
+        assert said in text
 
 
 def test_every_stop_has_a_proof_for_each_robot():
@@ -178,13 +210,13 @@ def test_every_stop_has_a_proof_for_each_robot():
     (stop,) = found.stops
     assert [(name, recorded.proved, said) for name, recorded, said in stop.proofs] == [
         ('bot1', True, 'seen'), ('bot2', False, '-')]
-    assert 'class="bad"' in page_of(found, '', {})
+    assert 'class="bad"' in report_page(found, '', {})
 
 
 def test_a_session_of_nothing_is_none():
     with pytest.raises(NotASession):
         report([], {}, {})
-    assert '<h2>Robots' not in page_of(report([line(0.0, 'start', 'begins')], {}), '', {})
+    assert '<h2>Robots' not in report_page(report([line(0.0, 'start', 'begins')], {}), '', {})
 
 
 @pytest.mark.parametrize('name, good', [
@@ -265,7 +297,7 @@ def test_a_stop_that_nobody_released_ends_with_the_session():
     found = report(events)
     assert [(stop.span.begin_s, stop.span.end_s, stop.released) for stop in found.stops] == [
         (10.0, 15.0, True), (50.0, 60.0, False)]
-    assert page_of(found, '', {}).count('not released') == 1
+    assert report_page(found, '', {}).count('not released') == 1
 
 
 def test_a_flag_stands_at_its_robot_with_the_first_words_of_its_note():
@@ -275,7 +307,7 @@ def test_a_flag_stands_at_its_robot_with_the_first_words_of_its_note():
                     line(20.0, 'mark', 'mark 2', robot='a', id='m2', poses=poses)])
     assert spots_of(found.marks, ['b'], 'map') == [FlagView('1 a <red> door', 3.0, 4.0, 'map')]
     assert [flag.label for flag in spots_of(found.marks, [], 'map')] == ['1 a <red> door', '2']
-    assert '>1 a &lt;red&gt; door</text>' in page_of(found, '', {})
+    assert '>1 a &lt;red&gt; door</text>' in report_page(found, '', {})
     # The words stay on the sheet, wherever the flag is.
     for x_m in (0.0, 5.0):
         flags = [FlagView('1 water on the floor\u2026', x_m, 0.0, 'map')]

@@ -9,10 +9,12 @@ import os
 import numpy as np
 
 from mhri.base.io.files import whole
+from mhri.base.io.pages import page
 from mhri.base.opencv import cv2
+from mhri.graph.ros.resources import resource_path
 from mhri.recording.recording import ros_home
 from mhri.session.report import is_still, MAX_MARKS, MAX_STILLS, spots_of, ways_of
-from mhri.session.report_page import page_of
+from mhri.session.report_page import TEMPLATE, values_of
 from mhri.session.sheet import bounds_points, drawn, ground, sheet_of
 
 PAGE, MAP, WORLD = 'report.html', 'map.png', 'map.pgw'
@@ -47,8 +49,9 @@ def write_report(report, grid, session, folder):
         paths = [_write(folder, name, data) for name, data in files]
     except NoPicture as error:
         report = replace(report, problems=report.problems + ('the map: {}'.format(error),))
-    page = page_of(report, picture, _stills(report, session), note)
-    return [_write(folder, PAGE, page.encode('utf-8', 'replace'))] + paths
+    text = page(resource_path('pages'), TEMPLATE, values_of(
+        report, picture, _stills(report, session), note))
+    return [_write(folder, PAGE, text.encode('utf-8', 'replace'))] + paths
 
 
 def _map_of(report, grid):
