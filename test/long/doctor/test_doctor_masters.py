@@ -1,6 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Which masters programs on this computer use, as the kernel tells; when this one was started."""
+import contextlib
 import os
 import subprocess
 import sys
@@ -18,25 +19,30 @@ COMPUTER = Computer(name='desk', addresses=('127.0.0.1', '192.0.2.1'),
 URI = 'http://127.0.0.1:{}'
 
 
-def process(folder, number, environ='', cmdline='program'):
-    """Write what the kernel tells of a process; None of what is not ours to read."""
-    path = folder / str(number)
-    path.mkdir()
-    for name, words in (('environ', environ), ('cmdline', cmdline)):
-        if words is not None:
-            (path / name).write_bytes(words.replace(' ', '\0').encode() + b'\0')
+@pytest.fixture
+def programs():
+    """Start programs by other names, each of which ends with the test."""
+    with contextlib.ExitStack() as ends:
+        def start(*words, **variables):
+            program = ends.enter_context(subprocess.Popen(
+                [words[0], '-c', 'print(flush=True); input()', *words[1:]],
+                executable=sys.executable, env=dict(os.environ, **variables),
+                stdin=subprocess.PIPE, stdout=subprocess.PIPE))
+            ends.callback(program.kill)
+            program.stdout.readline()
+        yield start
 
 
-def test_masters_that_programs_use(tmp_path):
-    process(tmp_path, 7, 'HOME=/x ROS_MASTER_URI=http://desk:11322 A=b')
-    process(tmp_path, 8, 'ROS_MASTER_URI=http://desk:11322')
-    process(tmp_path, 9, None, 'python3 /opt/ros/bin/rosmaster --core -p 11333')
-    process(tmp_path, 10, None, '/usr/bin/cp -p 1')
-    process(tmp_path, 11, None, 'roscore -p')
-    process(tmp_path, 12, 'XROS_MASTER_URI=http://no:1', None)
-    (tmp_path / 'uptime').write_text('1')
-    assert sorted(uris_in_use(str(tmp_path))) == ['http://desk:11322', 'http://localhost:11333']
-    assert uris_in_use(str(tmp_path / 'none')) == []
+def test_masters_that_programs_use(programs):
+    programs('a', ROS_MASTER_URI='http://desk:11322')
+    programs('b', ROS_MASTER_URI='http://desk:11322')
+    programs('c', ROS_MASTER_URI='http://caf\udce9:1', XROS_MASTER_URI='http://no:1')
+    programs('/opt/ros/bin/rosmaster', '--core', '-p', '11333')
+    programs('cp', '-p', '11334')
+    programs('roscore', '-p')
+    found = uris_in_use()
+    assert {'http://desk:11322', 'http://caf?:1', 'http://localhost:11333'} <= found
+    assert not {'http://no:1', 'http://localhost:11334'} & found
 
 
 def asked(monkeypatch, uri, uris):

@@ -18,9 +18,9 @@ from mhri.graph.ros.parallel_calls import Answers
 from mhri.graph.ros.resources import package_path
 from mhri.recording.recording import ros_home
 
-# Debian packages of package.xml, and the Python module in each.
-_MODULES = {'python3-evdev': 'evdev', 'python3-numpy': 'numpy', 'python3-opencv': 'cv2',
-            'python3-pygame': 'pygame', 'python3-pyqtgraph': 'pyqtgraph', 'python3-yaml': 'yaml'}
+# Names of system packages begin so; the rest is the name of the module, but for these.
+_PYTHON = 'python3-'
+_MODULES = {'python3-opencv': 'cv2'}
 _LIBRARIES = {'libturbojpeg': turbojpeg.load}
 _PROGRAMS = ('openssl',)
 # Optional: without rqt the panel has its own window; only a TurtleBot 2 needs nodelets.
@@ -126,15 +126,15 @@ def _packages(package_path):
     found = {}
     for name in sorted({(entry.text or '').strip() for entry in root
                         if entry.tag in ('exec_depend', 'depend')}):
-        module = _MODULES.get(name)
         if name in _LIBRARIES:
             found[name] = '' if _LIBRARIES[name]() else 'the library cannot be loaded'
         elif name in _PROGRAMS:
             found[name] = '' if shutil.which(name) else 'the program is not installed'
-        elif module is not None:
+        elif name.startswith(_PYTHON):
+            module = _MODULES.get(name, name[len(_PYTHON):].replace('-', '_'))
             found[name] = '' if _has_module(module) else \
                 'no Python module "{}"'.format(module)
-        elif not name.startswith('python3-') and name not in _OPTIONAL:
+        elif name not in _OPTIONAL:
             found[name] = '' if _has_package(finder, name) else 'no ROS package of that name'
     return found
 

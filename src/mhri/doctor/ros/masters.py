@@ -1,10 +1,11 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
 """Finds other masters than the configured one: those of programs on this computer."""
-import glob
 import os
 import time
 from urllib.parse import urlsplit
+
+import psutil
 
 from mhri.doctor.facts import Master, SILENT
 from mhri.doctor.system import MODE
@@ -13,9 +14,8 @@ from mhri.graph.ros.master_api import DEFAULT_PORT, MasterApi, MasterError, uri_
 
 LIMIT_S = 0.3
 MOST = 16
-_VARIABLE = b'ROS_MASTER_URI='
-_PROGRAMS = (b'rosmaster', b'roscore', b'roslaunch')
-_PORT = (b'-p', b'--port')
+_PROGRAMS = ('rosmaster', 'roscore', 'roslaunch')
+_PORT = ('-p', '--port')
 
 
 def parse_uri(uri):
@@ -27,33 +27,22 @@ def parse_uri(uri):
     return Master(uri, parts.hostname, parts.port)
 
 
-def uris_in_use(folder='/proc'):
+def uris_in_use():
     """Return the master URIs of the programs on this computer.
 
     Of other users' programs only masters are visible, and only if their port is an argument.
-
-    :param folder: the kernel's folder of processes; only exists on Linux
     """
-    found = {}
-    for path in glob.glob(os.path.join(folder, '[0-9]*')):
-        for line in _words(path, 'environ'):
-            if line.startswith(_VARIABLE):
-                found[line[len(_VARIABLE):].decode('utf-8', 'replace')] = True
-        words = _words(path, 'cmdline')
+    found = set()
+    for process in psutil.process_iter(['cmdline', 'environ']):
+        uri = (process.info['environ'] or {}).get('ROS_MASTER_URI')
+        if uri is not None:
+            # The environment of a program may hold any bytes.
+            found.add(uri.encode('utf-8', 'replace').decode('utf-8'))
+        words = process.info['cmdline'] or ()
         if any(os.path.basename(word) in _PROGRAMS for word in words[:2]):
-            found.update(('http://localhost:{}'.format(port.decode()), True)
-                         for flag, port in zip(words, words[1:])
-                         if flag in _PORT and port.isdigit())
-    return list(found)
-
-
-def _words(path, name):
-    """Return a process's arguments or environment, [] if unreadable or ended."""
-    try:
-        with open(os.path.join(path, name), 'rb') as file:
-            return file.read().split(b'\0')
-    except OSError:
-        return []
+            found.update('http://localhost:{}'.format(port) for flag, port in zip(words, words[1:])
+                         if flag in _PORT and port.isdecimal())
+    return found
 
 
 def _others(master, computer, uris):
