@@ -33,21 +33,21 @@ DEBIAN_RUN=(
   python3-tf2-msgs python3-rosgraph-msgs python3-diagnostic-msgs python3-diagnostic-updater
   python3-cv-bridge python3-python-qt-binding python3-pyqt5 python3-pyqtgraph python3-pygame
   python3-evdev python3-pocketsphinx pocketsphinx-en-us python3-pyaudio
-  python3-numpy python3-opencv python3-yaml python3-genpy python3-netifaces python3-cryptography
-  python3-aiohttp python3-qrcode
+  python3-numpy python3-opencv python3-yaml python3-genpy python3-jinja2 python3-psutil
+  python3-cryptography python3-aiohttp python3-qrcode
   fonts-dejavu-core
   libturbojpeg0 openssh-client openssl
   xvfb xauth hostname util-linux
 )
 DEBIAN_TEST=(
   librostest-dev python3-rostest python3-roslib topic-tools python3-pytest python3-pytest-timeout
-  python3-flake8 python3-flake8-docstrings python3-pip python3-psutil python3-rosdep2 catkin-lint shellcheck mkdocs
+  python3-flake8 python3-flake8-docstrings python3-pip python3-rosdep2 catkin-lint shellcheck mkdocs
   xdotool imagemagick x11-utils git procps espeak-ng sox ffmpeg openssh-server iproute2 nftables
   locales chromium chromium-driver python3-selenium
 )
 # Only for the fast group of tests; most have the same names on Ubuntu.
 FAST=(
-  python3-catkin-pkg python3-cryptography python3-evdev python3-flake8 python3-numpy python3-opencv
+  python3-catkin-pkg python3-cryptography python3-evdev python3-flake8 python3-jinja2 python3-numpy python3-opencv
   python3-pip python3-psutil python3-pyaudio python3-pytest python3-pytest-timeout python3-rospkg
   python3-yaml shellcheck git util-linux
 )
@@ -57,7 +57,7 @@ UBUNTU_RUN=(
   openssh-client
 )
 UBUNTU_TEST=(
-  python3-pytest python3-pytest-timeout python3-flake8 python3-pip python3-psutil python3-catkin-lint
+  python3-pytest python3-pytest-timeout python3-flake8 python3-pip python3-catkin-lint
   shellcheck mkdocs xdotool imagemagick x11-utils git procps espeak-ng sox ffmpeg openssh-server
   iproute2 nftables locales
 )

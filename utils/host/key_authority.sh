@@ -3,7 +3,7 @@
 # shellcheck shell=bash
 # The authority of mhri_keys.sh, by openssl: certificates, who has one, which are withdrawn, and what
 # is wrong with one. AUTHORITY is its folder, NAME the owner of the key in hand, DAYS how long it is
-# to be good; SCRATCH is made. Sourced after common.sh, never run.
+# to be good; SCRATCH is made. Sourced after common.sh, never run. Why not easy-rsa: see doc/libraries.md.
 
 # A key is called for so many days before its end.
 SOON_DAYS=30

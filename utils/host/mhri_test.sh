@@ -27,7 +27,7 @@ install_tools() {
 has_fast() {
   command -v git >/dev/null && command -v shellcheck >/dev/null && command -v catkin_lint >/dev/null &&
     PYTHONPATH="$WS/tools" python3 -c 'import catkin_pkg, cryptography, ctypes, cv2, evdev, flake8, flake8_docstrings
-import numpy, psutil, pyaudio, pytest, pytest_timeout, rospkg, vermin, yaml
+import jinja2, numpy, psutil, pyaudio, pytest, pytest_timeout, rospkg, vermin, yaml
 ctypes.CDLL("libturbojpeg.so.0")' 2>/dev/null
 }
 

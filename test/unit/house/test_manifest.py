@@ -16,7 +16,7 @@ ROOT = xml.etree.ElementTree.parse(str(REPO / 'package.xml')).getroot()
 KEYS = {'aiohttp': 'python3-aiohttp', 'catkin_pkg': 'python3-catkin-pkg',
         'cryptography': 'python3-cryptography',
         'cv2': 'python3-opencv', 'evdev': 'python3-evdev',
-        'netifaces': 'python3-netifaces', 'numpy': 'python3-numpy', 'psutil': 'python3-psutil',
+        'jinja2': 'python3-jinja2', 'numpy': 'python3-numpy', 'psutil': 'python3-psutil',
         'pyaudio': 'python3-pyaudio', 'pygame': 'python3-pygame',
         'pyqtgraph': 'python3-pyqtgraph', 'pytest': 'python3-pytest',
         'qrcode': 'python3-qrcode',
