@@ -6,7 +6,7 @@ The pixels are alternating runs of zeros and of others: (count of zeros, count o
 others), the others as zigzag-encoded differences to their predecessors. Numbers have three bits per
 nibble, the lowest first, with 8 added while more follow; nibbles fill 32-bit little-endian words
 from the top. This module reads and writes all numbers at once, with numpy; only the heads of the
-runs are read one by one.
+runs are read one by one. ROS has this code in C++ alone (compressed_depth_image_transport).
 """
 from typing import Tuple
 

@@ -1,6 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Loads libjpeg-turbo's own interface, without numpy, so that the doctor can check for it."""
+"""Loads libjpeg-turbo's own interface, without numpy, so that the doctor can check for it.
+
+Why no library: see doc/libraries.md.
+"""
 import ctypes
 from functools import lru_cache
 from typing import Optional

@@ -2,8 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Requests to the X server that Qt does not offer, through libxcb. No Qt here.
 
-Not python-xlib: it supports neither displays over IPv6 nor wildcards in ``~/.Xauthority``
-(containers), and leaves raw events as bytes, too.
+Why no library: see doc/libraries.md.
 """
 import ctypes
 import struct

@@ -9,7 +9,8 @@ indexed in memory; nothing is ever written.
 
 ``rosbag`` compiles the definitions in a bag, even to read it raw, and a definition can contain any
 Python. An opened bag is therefore reduced to the types that are installed here in the same version,
-with the installed definitions; see :func:`keep_installed`.
+with the installed definitions; see :func:`keep_installed`. Why not ``rosbags``: see
+doc/libraries.md.
 """
 from bisect import bisect_right
 from collections import OrderedDict
