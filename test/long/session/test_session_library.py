@@ -21,7 +21,8 @@ TIMEOUT_S = 120.0
 
 @pytest.fixture
 def library(tmp_path):
-    made = SessionLibrary({'ROS_HOME': str(tmp_path)}, lambda path: [sys.executable, '-c', ''])
+    made = SessionLibrary(dict(os.environ, ROS_HOME=str(tmp_path)),
+                          lambda path: [sys.executable, '-c', ''])
     yield made
     made.close()
 
