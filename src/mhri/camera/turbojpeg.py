@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Loads libjpeg-turbo's own interface, without numpy, so that the doctor can check for it.
 
-Why no library: see doc/libraries.md.
+Why not simplejpeg: see doc/libraries.md.
 """
 import ctypes
 from functools import lru_cache

@@ -24,7 +24,7 @@ def values_of(result: Mapping[str, Any], walls: Sequence[Sequence[float]],
     """
     return dict(
         result=result, heads=heads_of(result, earlier), figures=rows_of([result, *earlier]),
-        way=_way(result, walls, targets),
+        plan=_plan(result, walls, targets),
         robots=[(name, robot['type'], '{:.1f} s'.format(robot['driven_s']),
                  '{:.1f} s'.format(robot['neglected_s']), '{:.1f} m'.format(robot['distance_m']),
                  robot['contacts']) for name, robot in result['robots'].items()],
@@ -35,9 +35,9 @@ def values_of(result: Mapping[str, Any], walls: Sequence[Sequence[float]],
                     else 'none') for each in result['reactions']])
 
 
-def _way(result: Mapping[str, Any], walls: Sequence[Sequence[float]],
-         targets: Sequence[Target]) -> Dict[str, Any]:
-    """Return what is drawn of the building and of every robot's way, as seen from above [m]."""
+def _plan(result: Mapping[str, Any], walls: Sequence[Sequence[float]],
+          targets: Sequence[Target]) -> Dict[str, Any]:
+    """Return the plan of the building with every robot's path, in metres from its top left."""
     xs = [wall[place] for wall in walls for place in (0, 2)]
     ys = [wall[place] for wall in walls for place in (1, 3)]
     left, top = min(xs) - _MARGIN_M, max(ys) + _MARGIN_M

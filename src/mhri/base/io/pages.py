@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The mhri authors
 # SPDX-License-Identifier: BSD-3-Clause
-"""Pages of HTML, from templates of Jinja. Whatever is not part of the template is escaped."""
+"""Renders HTML pages from Jinja templates; every value is escaped."""
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
 
@@ -10,7 +10,7 @@ def page(folder, template, values):
     :param folder: the folder of the templates, ``resource/pages``
     :param template: the name of one of them
     :param values: {name in the template: value}
-    :raises jinja2.TemplateError: the template is not there, or names what is not in the values
+    :raises jinja2.TemplateError: the template is missing, or uses a name without a value
     """
     environment = Environment(loader=FileSystemLoader(folder), autoescape=True,
                               undefined=StrictUndefined, trim_blocks=True)

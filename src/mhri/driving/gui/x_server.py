@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Requests to the X server that Qt does not offer, through libxcb. No Qt here.
 
-Why no library: see doc/libraries.md.
+Why not python-xlib: see doc/libraries.md.
 """
 import ctypes
 import struct
